@@ -1,0 +1,47 @@
+"""One portrait and its 68 landmarks in; a textured, rigged, animatable 3D face out.
+
+The stages, in the order in which :func:`make_avatar` calls them:
+
+1. :func:`read_image`, :func:`read_landmarks` - the picture and its points.
+2. :func:`fit_3dmm` - a morphable model posed and shaped by the landmarks.
+3. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.
+4. :func:`bake_texture` (with :func:`diffuse_texture`) - the picture on the UV atlas, unseen parts filled by diffusion.
+5. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face.
+6. :func:`fit_eyes` - eyeballs in their sockets.
+7. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
+
+Every name is imported when it is first used, so ``import toongeo`` itself costs almost nothing.
+"""
+
+from toongeo._lazy import attach
+
+__version__ = "0.1.0"
+
+__getattr__, __dir__, __all__ = attach(
+    __name__,
+    {
+        "Avatar": "avatar",
+        "make_avatar": "make_avatar",
+        "read_image": "io",
+        "read_landmarks": "io",
+        "write_landmarks": "io",
+        "default_model": "model",
+        "MorphableModel": "model",
+        "ScaledOrthographicCamera": "render",
+        "render_mesh": "render",
+        "laplacian_align": "geometry",
+        "LaplacianAligner": "geometry",
+        "deformation_transfer": "geometry",
+        "DeformationTransfer": "geometry",
+        "fit_3dmm": "pipeline",
+        "FaceFit": "pipeline",
+        "align_face": "pipeline",
+        "AlignedFace": "pipeline",
+        "diffuse_texture": "pipeline",
+        "bake_texture": "pipeline",
+        "build_rig": "pipeline",
+        "Rig": "pipeline",
+        "fit_eyes": "pipeline",
+        "Eyes": "pipeline",
+    },
+)

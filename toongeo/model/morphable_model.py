@@ -1,0 +1,98 @@
+"""A linear morphable face model."""
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from toongeo.model.eyeball_template import EyeballTemplate
+
+
+@dataclass(frozen=True, eq=False)
+class MorphableModel:
+    """Shape and albedo are linear in their coefficients (Pan et al. 2024, Eq. 1-2); the model holds no coefficients.
+
+    Attributes
+    ----------
+    mean : (n, 3) float64, mm, model frame
+    faces : (m, 3) int64, counter-clockwise from outside
+    quads : (q, 4) int64
+        The same surface in quads.
+    identity : (k, n, 3) float32
+        One unit of a coefficient is one standard deviation.
+    expression : (e, n, 3) float32
+        The named ones first; their natural range is [0, 1].
+    expression_names : tuple of e names
+    n_named : int
+        How many expressions are named FACS units.
+    albedo_mean : (n, 3) float32, sRGB in [0, 1]
+    albedo : (a, n, 3) float32
+    landmarks : (68,) int64
+        Vertex of each iBUG-68 point, facing the camera.
+    contour_lines : 17 arrays of vertices
+        For jaw point k, the vertices on which it can lie, from the front to the back of the head.
+    regions : name -> (n,) bool
+    mirror : (n,) int64
+        The vertex on the other side of the plane x = 0.
+    uv : (t, 2) float64, origin bottom left
+    uv_faces : (m, 3) int64
+    eyes : left and right eyeball
+    """
+
+    mean: np.ndarray
+    faces: np.ndarray
+    quads: np.ndarray
+    identity: np.ndarray
+    expression: np.ndarray
+    expression_names: tuple[str, ...]
+    n_named: int
+    albedo_mean: np.ndarray
+    albedo: np.ndarray
+    landmarks: np.ndarray
+    contour_lines: tuple[np.ndarray, ...]
+    regions: Mapping[str, np.ndarray]
+    mirror: np.ndarray
+    uv: np.ndarray
+    uv_faces: np.ndarray
+    eyes: tuple[EyeballTemplate, EyeballTemplate]
+
+    def __post_init__(self) -> None:
+        for value in [*vars(self).values(), *self.contour_lines, *self.regions.values()]:
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
+    def vertices(self, identity: np.ndarray | None = None, expression: np.ndarray | None = None) -> np.ndarray:
+        """Vertices (n, 3), mm, for identity (k,) and expression (e,) coefficients; None is zero.
+
+        Raises
+        ------
+        ValueError
+            If a coefficient vector has another length than the model has modes.
+        """
+        V = self.mean.copy()
+        for name, coefficients, modes in (
+            ("identity", identity, self.identity),
+            ("expression", expression, self.expression),
+        ):
+            if coefficients is None:
+                continue
+            c = np.asarray(coefficients, float)
+            if c.shape != (len(modes),):
+                raise ValueError(f"{name}: expected shape ({len(modes)},), got {c.shape}")
+            V += (c.astype(np.float32) @ modes.reshape(len(modes), -1)).reshape(-1, 3)
+        return V
+
+    def region(self, name: str) -> np.ndarray:
+        """Mask (n,) of a named region; an unknown name raises ValueError that lists the known ones."""
+        if name not in self.regions:
+            raise ValueError(f"name: no region {name!r}; known: {', '.join(sorted(self.regions))}")
+        return self.regions[name]
+
+    def expression_index(self, name: str) -> int:
+        """Index of a named expression; an unknown name raises ValueError that suggests the nearest ones."""
+        if name in self.expression_names:
+            return self.expression_names.index(name)
+        near = difflib.get_close_matches(name, self.expression_names, n=3, cutoff=0.4)
+        hint = f"; did you mean {', '.join(near)}?" if near else ""
+        raise ValueError(f"name: no expression {name!r}{hint}")

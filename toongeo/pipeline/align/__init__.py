@@ -1,0 +1,1 @@
+"""Fine stage: the coarse face deformed onto the landmarks."""

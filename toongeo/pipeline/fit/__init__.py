@@ -1,0 +1,1 @@
+"""Coarse stage: a morphable model fitted to the landmarks."""

@@ -1,0 +1,1 @@
+"""Expressions, eyes and what moves them."""

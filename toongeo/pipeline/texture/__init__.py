@@ -1,0 +1,1 @@
+"""The picture on the face: texture coordinates, baking, diffusion."""
