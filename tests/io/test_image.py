@@ -1,0 +1,234 @@
+"""Pictures of every kind, against pixels made by numpy."""
+
+import io
+import struct
+import zlib
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from toongeo.io import encode_image, read_image, write_image
+
+# What a viewer does to the stored pixels, by EXIF orientation (TIFF 6.0 / EXIF 2.3, tag 274).
+UPRIGHT = {
+    1: lambda a: a,
+    2: lambda a: a[:, ::-1],
+    3: lambda a: a[::-1, ::-1],
+    4: lambda a: a[::-1],
+    5: lambda a: a.swapaxes(0, 1),
+    6: lambda a: a.swapaxes(0, 1)[:, ::-1],
+    7: lambda a: a[::-1, ::-1].swapaxes(0, 1),
+    8: lambda a: a.swapaxes(0, 1)[::-1],
+}
+
+
+@pytest.fixture
+def rgb():
+    return np.random.default_rng(1).integers(0, 256, (11, 7, 3), dtype=np.uint8)
+
+
+def on_white(rgba, top):
+    rgba = rgba.astype(float) / top
+    return 255 * (rgba[..., :-1] * rgba[..., -1:] + 1 - rgba[..., -1:])
+
+
+@pytest.mark.parametrize("name", ["a.png", "Ünïcode 顔.PNG", "a.bmp", "a.tiff", "a.webp"])
+def test_lossless_formats(tmp_path, rgb, name):
+    path = tmp_path / name
+    Image.fromarray(rgb).save(path, **({"lossless": True} if name.endswith("webp") else {}))
+    for given in (path, str(path)):
+        np.testing.assert_array_equal(read_image(given), rgb)
+    assert read_image(path).dtype == np.uint8 and read_image(path).flags.writeable
+
+
+@pytest.mark.parametrize("suffix", [".jpg", ".JPEG", ".webp"])
+def test_lossy_formats(tmp_path, suffix):
+    smooth = np.stack(np.meshgrid(np.arange(64) * 3, np.arange(48) * 4), axis=-1)
+    smooth = np.dstack([smooth, np.full((48, 64), 90)]).astype(np.uint8)
+    write_image(tmp_path / f"a{suffix}", smooth, quality=95)
+    assert np.abs(read_image(tmp_path / f"a{suffix}").astype(int) - smooth).mean() < 3
+
+
+@pytest.mark.parametrize("orientation", UPRIGHT)
+@pytest.mark.parametrize("kind", ["png", "webp", "tiff", "jpeg"])
+def test_exif_rotation(tmp_path, rgb, orientation, kind):
+    exif = Image.Exif()
+    exif[274] = orientation
+    if kind == "jpeg":  # blocks of one colour survive compression
+        rgb = np.repeat(np.repeat(rgb, 16, axis=0), 16, axis=1)
+    options = {"webp": {"lossless": True}, "jpeg": {"quality": 95, "subsampling": 0}}.get(kind, {})
+    Image.fromarray(rgb).save(tmp_path / f"a.{kind}", exif=exif, **options)
+    got, expected = read_image(tmp_path / f"a.{kind}"), UPRIGHT[orientation](rgb)
+    assert got.shape == expected.shape
+    np.testing.assert_allclose(got.astype(int), expected, atol=20 if kind == "jpeg" else 0)
+
+
+def test_exif_rotation_with_alpha(tmp_path, rgb):
+    rgba = np.dstack([rgb, np.random.default_rng(2).integers(0, 256, (11, 7), dtype=np.uint8)])
+    exif = Image.Exif()
+    exif[274] = 6
+    Image.fromarray(rgba).save(tmp_path / "a.png", exif=exif)
+    expected = UPRIGHT[6](on_white(rgba, 255))
+    np.testing.assert_allclose(read_image(tmp_path / "a.png"), expected, atol=0.51)
+
+
+@pytest.mark.parametrize("channels", [1, 3, 4])
+@pytest.mark.parametrize("kind", ["png", "tiff"])
+def test_sixteen_bits(tmp_path, channels, kind):
+    pixels = np.random.default_rng(3).integers(0, 65536, (9, 5, channels), dtype=np.uint16)
+    pixels[0, 0] = 65535
+    pixels[0, 1] = 0
+    # OpenCV writes BGR(A).
+    stored = pixels[..., [2, 1, 0, 3][:channels]] if channels > 1 else pixels
+    assert cv2.imwrite(str(tmp_path / f"a.{kind}"), stored)
+    expected = on_white(pixels, 65535) if channels == 4 else pixels / 257
+    np.testing.assert_allclose(
+        read_image(tmp_path / f"a.{kind}"), np.broadcast_to(expected, (9, 5, 3)), atol=1.5
+    )
+
+
+def test_sixteen_bits_that_repeat_eight_are_exact(tmp_path, rgb):
+    for stored in (rgb.astype(np.uint16) * 257, rgb[..., :1].astype(np.uint16) * 257):
+        cv2.imwrite(str(tmp_path / "a.png"), stored[..., ::-1])
+        expected = (stored // 257).astype(np.uint8)
+        np.testing.assert_array_equal(read_image(tmp_path / "a.png"), np.broadcast_to(expected, rgb.shape))
+
+
+@pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "PA", "CMYK", "RGBA"])
+def test_modes(tmp_path, rgb, mode):
+    source = Image.fromarray(rgb)
+    if mode == "PA":
+        image = source.convert("RGBA").quantize(16)
+        image.info["transparency"] = bytes(range(0, 256, 16))
+        alpha = np.array(range(0, 256, 16))[np.asarray(image)][..., None]
+        colours = np.array(image.getpalette(), int).reshape(-1, 3)[np.asarray(image)]
+        expected = (colours * alpha + 255 * (255 - alpha)) / 255
+    else:
+        image = source.convert(mode)
+        if mode in ("LA", "RGBA"):
+            image.putalpha(Image.fromarray(rgb[..., 0]))
+        grey = np.asarray(image.convert("RGB" if mode in ("1", "P", "CMYK") else image.mode))
+        expected = np.broadcast_to(on_white(grey, 255), rgb.shape) if mode in ("LA", "RGBA") else grey
+        expected = np.broadcast_to(grey[..., None], rgb.shape) if mode == "L" else expected
+    image.save(tmp_path / ("a.tiff" if mode == "CMYK" else "a.png"))
+    got = read_image(tmp_path / ("a.tiff" if mode == "CMYK" else "a.png"))
+    assert got.shape == (11, 7, 3)
+    np.testing.assert_allclose(got.astype(float), expected, atol=0.51)
+
+
+@pytest.mark.parametrize(("mode", "clear"), [("L", 7), ("RGB", (1, 2, 3)), ("I;16", 700)])
+def test_colour_that_means_transparent(tmp_path, mode, clear):
+    if mode == "I;16":
+        image = Image.fromarray(np.array([[700, 300 * 256 // 2]], np.uint16))
+    else:
+        image = Image.new(mode, (2, 1), clear)
+        image.putpixel((1, 0), 200 if mode == "L" else (200, 200, 200))
+    image.save(tmp_path / "a.png", transparency=clear)
+    got = read_image(tmp_path / "a.png")
+    assert (got[0, 0] == 255).all() and (got[0, 1] < 255).all()
+
+
+@pytest.mark.parametrize("channels", [None, 3, 4])
+@pytest.mark.parametrize("suffix", [".png", ".webp"])
+def test_write_and_read(tmp_path, channels, suffix):
+    pixels = np.full((6, 5) if channels is None else (6, 5, channels), 255, np.uint8)
+    pixels[2:, 1:] = 0
+    if channels == 4:
+        pixels[..., 3] = 255
+    write_image(tmp_path / f"a{suffix}", pixels, quality=100)
+    expected = np.repeat(pixels[..., None], 3, axis=-1) if channels is None else pixels[..., :3]
+    np.testing.assert_allclose(
+        read_image(tmp_path / f"a{suffix}").astype(int), expected, atol=0 if suffix == ".png" else 60
+    )
+    assert encode_image(pixels, suffix) == encode_image(pixels.copy(), suffix)
+
+
+@pytest.mark.parametrize(
+    ("pixels", "name", "message"),
+    [
+        (np.zeros((4, 4, 3)), "a.png", "img: expected uint8, got float64"),
+        (np.zeros((4, 4, 2), np.uint8), "a.png", r"img: .* got shape \(4, 4, 2\)"),
+        (np.zeros((0, 4, 3), np.uint8), "a.png", r"img: .* got shape \(0, 4, 3\)"),
+        (np.zeros((4, 4, 4), np.uint8), "a.jpg", "JPEG holds no alpha"),
+        (np.zeros((4, 4, 3), np.uint8), "a.xyz", "suffix: expected one of .*, got '.xyz'"),
+    ],
+)
+def test_refused_to_write(tmp_path, pixels, name, message):
+    with pytest.raises(ValueError, match=message):
+        write_image(tmp_path / name, pixels)
+    assert list(tmp_path.iterdir()) == []
+
+
+def png_of_size(width, height):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(b""))
+        + chunk(b"IEND", b"")
+    )
+
+
+def encoded(kind, pixels):
+    stream = io.BytesIO()
+    Image.fromarray(pixels).save(stream, kind)
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
+@pytest.mark.parametrize("share", [0.05, 0.5, 0.9])
+def test_truncated(tmp_path, kind, share):
+    content = encoded(kind, np.random.default_rng(4).integers(0, 256, (64, 64, 3), dtype=np.uint8))
+    path = tmp_path / "cut"
+    path.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(ValueError, match=r"expected a picture .*cut is (damaged|none of these)"):
+        read_image(path)
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning:PIL", "ignore::PIL.Image.DecompressionBombWarning")
+def test_flipped_bytes_give_a_picture_or_a_value_error(tmp_path, rgb):
+    rng = np.random.default_rng(7)
+    for kind in ("PNG", "JPEG", "WEBP", "GIF", "TIFF", "BMP"):
+        content = encoded(kind, rgb)
+        for _ in range(60):
+            broken = bytearray(content)
+            for place in rng.integers(0, len(content), 3):
+                broken[place] = rng.integers(0, 256)
+            (tmp_path / "x").write_bytes(broken)
+            try:
+                assert read_image(tmp_path / "x").shape[2] == 3
+            except ValueError as error:
+                assert "expected a picture" in str(error)  # noqa: PT017
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "got the empty file"),
+        (b"hello", "none of these"),
+        (png_of_size(0, 5), "damaged|zero size|none of these"),
+        (png_of_size(5, 0), "damaged|zero size|none of these"),
+        (png_of_size(100_000, 100_000), "damaged .*exceeds limit"),
+        (encoded("TIFF", np.zeros((4, 4), np.float32)), "floating-point"),
+        (encoded("TIFF", np.full((4, 4), 70_000, np.int32)), "32 bits"),
+    ],
+    ids=["empty", "text", "no width", "no height", "bomb", "float", "32 bit"],
+)
+def test_refused(tmp_path, content, message):
+    path = tmp_path / "portrait.png"
+    path.write_bytes(content)
+    with pytest.raises(ValueError, match=message) as info:
+        read_image(path)
+    assert "portrait.png" in str(info.value)
+
+
+def test_no_such_file(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"face\.png"):
+        read_image(tmp_path / "face.png")
+    with pytest.raises(OSError, match=str(tmp_path)):
+        read_image(tmp_path)
