@@ -135,7 +135,7 @@ class ScaledOrthographicCamera:
         return self.view(points)[:, :2] * (self.scale * _FLIP) + self.translation
 
     def depth(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Points (k, 3), mm, model frame -> (k,) mm along the viewing axis; larger is nearer to the viewer."""
+        """Points (k, 3), mm, model frame -> (k,) mm along the view; larger is nearer to the viewer."""
         return _rows(points, 3, "points") @ self.rotation[2]
 
     def unproject(self, px: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:

@@ -12,8 +12,11 @@ __all__ = ["Fragments", "rasterize"]
 
 _MAX_FACES = 2**24  # ids travel as float32 colours, exact up to here
 _MAX_REACH = 2.0**20  # px; beyond this the float32 edge functions of OpenCV lose the pixel grid
-_GROWTH = 1e-5  # a pixel centre this near to an edge (in barycentrics) belongs to both sides, so no cracks open
-_NEAREST, _FARTHEST = 0.99, 0.01
+_NEAREST, _FARTHEST = 0.99, 0.01  # depths in OpenCV's buffer, within (0, 1)
+_ROUNDING = 2.5e-7  # of the image's side: what the float32 projection may move a point by
+_MAX_GROWTH = 0.002  # of a face's own size, for slivers
+_MARGIN = 1e-3  # px, above what a face may grow by
+_CHUNK = 2**15  # pixels that stay in the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,12 +94,14 @@ def rasterize(
     array([0.5, 0.5, 0. ], dtype=float32)
     """
     points, faces = _checked(points_px, F, height, width)
-    corners = points[faces]
-    face_ids = _face_ids(corners, height, width, cull_back)
-    covered = np.flatnonzero(face_ids >= 0)
-    barycentrics = np.zeros((height * width, 3), np.float32)
-    barycentrics[covered] = _barycentrics(corners, face_ids.ravel()[covered], covered, width)
-    return Fragments(face_ids, barycentrics.reshape(height, width, 3))
+    drawn = _reaching_a_pixel(points, faces, height, width)
+    affine, twice_area = _affine_weights(points, faces[drawn])
+    kept = np.flatnonzero(twice_area < 0.0 if cull_back else twice_area)
+    drawn, affine = drawn[kept], affine[kept]
+    rows = _nearest(points, faces[drawn], _growth(affine, height, width), height, width)
+    barycentrics = _barycentrics(affine, rows)
+    face_ids = np.append(drawn, -1).astype(np.int32)[rows]  # row -1 is the last one
+    return Fragments(face_ids, barycentrics)
 
 
 def _checked(
@@ -115,9 +120,7 @@ def _checked(
     if height < 1 or width < 1:
         raise ValueError(f"height, width: expected a positive size in px, got {height} x {width}")
     if len(faces) and (faces.min() < 0 or faces.max() >= len(points)):
-        raise ValueError(
-            f"F: expected indices in [0, {len(points)}), got {faces.min()} to {faces.max()}"
-        )
+        raise ValueError(f"F: expected indices in [0, {len(points)}), got {faces.min()} to {faces.max()}")
     if points.shape[1] == 2:
         points = np.column_stack([points, np.zeros(len(points))])
     # written so that NaN fails too
@@ -128,56 +131,113 @@ def _checked(
     return points, faces
 
 
-def _face_ids(
-    corners: NDArray[np.float64], height: int, width: int, cull_back: bool
+def _reaching_a_pixel(
+    points: NDArray[np.float64], faces: NDArray[np.int64], height: int, width: int
+) -> NDArray[np.int64]:
+    """Rows of the faces whose bounding box holds a pixel centre: small pictures drop most of them here."""
+    keep = np.ones(len(faces), bool)
+    for axis, size in enumerate((width, height)):
+        a, b, c = (points[:, axis][faces[:, corner]] for corner in range(3))
+        first = np.ceil(np.minimum(np.minimum(a, b), c) - _MARGIN)
+        last = np.floor(np.maximum(np.maximum(a, b), c) + _MARGIN)
+        keep &= np.maximum(first, 0.0) <= np.minimum(last, size - 1.0)
+    return np.flatnonzero(keep)
+
+
+def _affine_weights(
+    points: NDArray[np.float64], faces: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Six numbers a face: the weights of its corners 1 and 2 are affine in the pixel, gx x + gy y + g0.
+
+    Also twice the signed area (m,), negative for a face that runs counter-clockwise as seen (y is down).
+    """
+    x, y = np.ascontiguousarray(points[:, :2].T)
+    a, b, c = faces.T
+    ax, ay = x[a], y[a]
+    ux, uy, vx, vy = x[b] - ax, y[b] - ay, x[c] - ax, y[c] - ay
+    twice_area = ux * vy - uy * vx
+    inverse = 1.0 / np.where(twice_area == 0.0, np.inf, twice_area)
+    gx1, gy1, gx2, gy2 = vy * inverse, -vx * inverse, -uy * inverse, ux * inverse
+    constants = -(gx1 * ax + gy1 * ay), -(gx2 * ax + gy2 * ay)
+    return np.column_stack([gx1, gy1, constants[0], gx2, gy2, constants[1]]), twice_area
+
+
+def _growth(affine: NDArray[np.float64], height: int, width: int) -> NDArray[np.float32]:
+    """By which part of its size (m,) a face must grow for its edges to move out by the rounding error.
+
+    A pixel centre on an edge then belongs to the faces on both sides; else float32 opens cracks between them.
+    """
+    gx1, gy1, gx2, gy2 = affine[:, 0], affine[:, 1], affine[:, 3], affine[:, 4]
+    steepest = np.maximum(np.abs(gx1) + np.abs(gy1), np.abs(gx2) + np.abs(gy2))  # 1 / height of the face
+    steepest = np.maximum(steepest, np.abs(gx1 + gx2) + np.abs(gy1 + gy2))
+    distance = 3.0 * _ROUNDING * max(height, width)  # the centroid has the weights 1/3
+    return np.minimum(distance * steepest, _MAX_GROWTH).astype(np.float32)
+
+
+def _nearest(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    growth: NDArray[np.float32],
+    height: int,
+    width: int,
 ) -> NDArray[np.int32]:
-    """Face id buffer: FLAT shading gives a face the colour of its first vertex, which here is its id.
+    """Row of the nearest face at each pixel: FLAT shading gives a face the colour of its first vertex.
 
     OpenCV knows only a perspective camera. At fovY = pi/2, near 1, far 2, a point at the distance
-    d = 2 / (2 - t) gets the buffer depth t, so X = x_ndc d w/h, Y = y_ndc d, Z = -d undoes the perspective and
-    keeps the depth linear.
+    d = 2 / (2 - t) gets the buffer depth t, so X = x_ndc d w/h, Y = y_ndc d, Z = -d undoes the perspective
+    and keeps the depth linear. Its pixel centres are at +0.5.
     """
     colours = np.full((height, width, 3), -1.0, np.float32)
-    if len(corners) == 0:
+    if len(faces) == 0:
         return colours[:, :, 0].astype(np.int32)
-    middle = corners.mean(axis=1, keepdims=True)
-    grown = corners + (corners - middle) * _GROWTH
-    depth = grown[..., 2]
-    lowest, highest = depth.min(), depth.max()
-    nearness = (depth - lowest) * ((_NEAREST - _FARTHEST) / ((highest - lowest) or 1.0))
-    d = 2.0 / (1.0 + _FARTHEST + nearness)
-    space = np.empty((len(corners), 3, 3), np.float32)
-    space[..., 0] = ((grown[..., 0] + 0.5) * (2.0 / width) - 1.0) * d * (width / height)
-    space[..., 1] = (1.0 - (grown[..., 1] + 0.5) * (2.0 / height)) * d
-    space[..., 2] = -d
-    ids = np.repeat(np.arange(len(corners), dtype=np.float32), 9).reshape(-1, 3)
-    indices = np.arange(3 * len(corners), dtype=np.int32).reshape(-1, 3)
+    depth = points[:, 2]
+    lowest, highest = depth[faces].min(), depth[faces].max()
+    if highest > lowest:
+        nearness = (depth - lowest) * ((_NEAREST - _FARTHEST) / (highest - lowest))
+        d = 2.0 / (2.0 - _NEAREST + nearness)
+    else:
+        d = np.ones(len(points))  # divides without rounding
+    space = np.empty((len(points), 3), np.float32)
+    space[:, 0] = ((points[:, 0] + 0.5) * (2.0 / width) - 1.0) * d * (width / height)
+    space[:, 1] = (1.0 - (points[:, 1] + 0.5) * (2.0 / height)) * d
+    space[:, 2] = -d
+    corners = space.take(faces, axis=0)
+    middle = (corners[:, 0] + corners[:, 1] + corners[:, 2]) / np.float32(3.0)
+    corners += (corners - middle[:, None]) * growth[:, None, None]
     settings = cv2.TriangleRasterizeSettings()
     settings.setShadingType(cv2.RASTERIZE_SHADING_FLAT)
-    settings.setCullingMode(cv2.RASTERIZE_CULLING_CW if cull_back else cv2.RASTERIZE_CULLING_NONE)
+    settings.setCullingMode(cv2.RASTERIZE_CULLING_NONE)
     cv2.triangleRasterizeColor(
-        space.reshape(-1, 3), indices, ids, colours, np.eye(4), np.pi / 2.0, 1.0, 2.0, settings
+        corners.reshape(-1, 3),
+        np.arange(corners.size // 3, dtype=np.int32).reshape(-1, 3),
+        np.repeat(np.arange(len(faces), dtype=np.float32), 9).reshape(-1, 3),
+        colours,
+        np.eye(4),
+        np.pi / 2.0,
+        1.0,
+        2.0,
+        settings,
     )
     return colours[:, :, 0].astype(np.int32)
 
 
-def _barycentrics(
-    corners: NDArray[np.float64], ids: NDArray[np.int32], covered: NDArray[np.int64], width: int
-) -> NDArray[np.float32]:
-    """Barycentrics (k, 3) of the flat pixels ``covered`` in their faces ``ids``."""
-    a = corners[:, 0, :2]
-    (ux, uy), (vx, vy) = (corners[:, 1, :2] - a).T, (corners[:, 2, :2] - a).T
-    twice_area = ux * vy - uy * vx
-    inverse = 1.0 / np.where(twice_area == 0.0, np.inf, twice_area)  # never visible
-    # weight_k = gx x + gy y + g0 is affine in the pixel: six numbers a face
-    gx1, gy1, gx2, gy2 = vy * inverse, -vx * inverse, -uy * inverse, ux * inverse
-    g01, g02 = -(gx1 * a[:, 0] + gy1 * a[:, 1]), -(gx2 * a[:, 0] + gy2 * a[:, 1])
-    y, x = np.divmod(covered, width)
-    weights = np.empty((len(ids), 3))
-    weights[:, 1] = gx1[ids] * x + gy1[ids] * y + g01[ids]
-    weights[:, 2] = gx2[ids] * x + gy2[ids] * y + g02[ids]
-    weights[:, 0] = 1.0 - weights[:, 1] - weights[:, 2]
-    outside = np.flatnonzero(weights.min(axis=1) < 0.0)  # by a rounding error of the coverage
-    clipped = np.maximum(weights[outside], 0.0)
-    weights[outside] = clipped / clipped.sum(axis=1, keepdims=True)
-    return weights.astype(np.float32)
+def _barycentrics(affine: NDArray[np.float64], rows: NDArray[np.int32]) -> NDArray[np.float32]:
+    """Barycentrics (height, width, 3) of every pixel in the face it shows."""
+    height, width = rows.shape
+    flat_rows = rows.ravel()
+    flat = np.zeros((height * width, 3), np.float32)
+    covered = np.flatnonzero(flat_rows >= 0)
+    for start in range(0, len(covered), _CHUNK):
+        pixels = covered[start : start + _CHUNK]
+        gx1, gy1, g01, gx2, gy2, g02 = affine.take(flat_rows[pixels], axis=0).T
+        y, x = np.divmod(pixels, width)
+        weights = np.empty((len(pixels), 3))
+        weights[:, 1] = gx1 * x + gy1 * y + g01
+        weights[:, 2] = gx2 * x + gy2 * y + g02
+        weights[:, 0] = 1.0 - weights[:, 1] - weights[:, 2]
+        lowest = np.minimum(np.minimum(weights[:, 0], weights[:, 1]), weights[:, 2])
+        outside = np.flatnonzero(lowest < 0.0)  # by the rounding error of the coverage
+        clipped = np.maximum(weights[outside], 0.0)
+        weights[outside] = clipped / clipped.sum(axis=1, keepdims=True)
+        flat[pixels] = weights
+    return flat.reshape(height, width, 3)
