@@ -38,6 +38,11 @@ class EyeballTemplate:
     iris_angle: float
     pupil_angle: float
 
+    def __post_init__(self) -> None:
+        for value in vars(self).values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
     def placed(self, identity: np.ndarray | None = None) -> tuple[np.ndarray, float]:
         """Centre (3,) and radius, mm, for identity coefficients (k,); None is the mean face."""
         if identity is None:

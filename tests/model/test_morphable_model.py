@@ -1,0 +1,47 @@
+import numpy as np
+import pytest
+
+from toongeo.geometry import catmull_clark
+from toongeo.model import data_path, default_model
+
+
+def test_vertices_are_linear(model, rng):
+    a, b = rng.normal(size=80), rng.random(64)
+    expected = model.mean + np.tensordot(a, model.identity, 1) + np.tensordot(b, model.expression, 1)
+    np.testing.assert_allclose(model.vertices(a, b), expected, atol=1e-3)
+    np.testing.assert_array_equal(model.vertices(), model.mean)
+
+
+def test_refining_the_modes_refines_the_face(model, rng):
+    """Catmull-Clark of a posed cage is the refined mean plus the refined modes."""
+    with np.load(data_path("data_templates/head.npz"), allow_pickle=False) as z:
+        cage, quads, modes = z["mean"].astype(float), z["quads"].astype(int), z["identity"].astype(float)
+    a = rng.normal(size=80)
+    S, _ = catmull_clark(quads, len(cage))
+    np.testing.assert_allclose(model.vertices(a), S @ (cage + np.tensordot(a, modes, 1)), atol=1e-3)
+
+
+def test_the_model_is_loaded_once_and_read_only(model):
+    assert default_model() is model
+    for array in (model.mean, model.identity, model.regions["face"], model.contour_lines[0], model.eyes[0].uv):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+
+
+def test_uv_faces_follow_the_faces(model):
+    """A triangle and its twin in the atlas have the same corners: no vertex sits at two places of one island edge."""
+    assert model.uv_faces.shape == model.faces.shape
+    pairs = np.unique(np.column_stack([model.uv_faces.ravel(), model.faces.ravel()]), axis=0)
+    assert len(np.unique(pairs[:, 0])) == len(pairs)  # a texture point belongs to one vertex
+
+
+def test_bad_arguments_are_named(model):
+    with pytest.raises(ValueError, match=r"identity: expected shape \(80,\), got \(3,\)"):
+        model.vertices(np.zeros(3))
+    with pytest.raises(ValueError, match=r"expression: expected shape \(64,\)"):
+        model.vertices(None, np.zeros(46))
+    with pytest.raises(ValueError, match="name: no region 'beard'; known: .*brow_left"):
+        model.region("beard")
+    with pytest.raises(ValueError, match="name: no expression 'smile_left'; did you mean"):
+        model.expression_index("smile_left")
+    assert model.expression_names[model.expression_index("jawOpen")] == "jawOpen"

@@ -1,0 +1,41 @@
+import numpy as np
+import pytest
+
+from toongeo.pipeline import align_face, build_rig, fit_3dmm
+
+
+@pytest.fixture(scope="module")
+def rig(avatar):
+    return avatar.rig
+
+
+def test_on_the_mean_face_the_rig_is_the_template(model, cartoon):
+    """Identity transfer: with the template's own mean as the target every expression comes back."""
+    fit = fit_3dmm(*cartoon("astronaut"))
+    mean = _with_vertices(align_face(fit, cartoon("astronaut")[1]), model.mean)
+    rig = build_rig(mean)
+    np.testing.assert_allclose(rig.deltas, model.expression[:46], atol=0.02)
+
+
+def _with_vertices(face, vertices):
+    import dataclasses
+
+    return dataclasses.replace(face, vertices=vertices)
+
+
+def test_vertices_are_linear_in_the_weights(rig, rng):
+    a, b = rng.random((2, 46))
+    middle = (rig.vertices(a) + rig.vertices(b)) / 2
+    np.testing.assert_allclose(rig.vertices((a + b) / 2), middle, atol=1e-4)
+    np.testing.assert_array_equal(rig.vertices(), rig.neutral)
+
+
+def test_the_skull_does_not_drift(rig, model):
+    still = np.abs(model.expression[:46]).max(axis=(0, 2)) < 0.05
+    assert still.sum() > 1000
+    assert np.abs(rig.deltas[:, still]).max() < 0.06
+
+
+def test_names_are_those_of_the_model(rig, model):
+    assert rig.names == model.expression_names[:46]
+    assert rig.deltas.shape == (46, len(model.mean), 3)

@@ -1,0 +1,121 @@
+"""Eyeballs in the sockets of a face."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from toongeo.model import EyeballTemplate, MorphableModel
+from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.similarity import similarity
+from toongeo.pipeline.rig.build_rig import Rig
+from toongeo.pipeline.rig.gaze import gaze_rotation
+
+SIDES = ("left", "right")
+GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame
+CLEARANCE = 0.01  # of the radius: how far lids stay off the eyeball
+PRIOR = 0.15  # of the radius: s.d. of centre and radius about the template's eyeball, carried along with the lids
+RIM = 0.04  # of the radius: s.d. of the lid rim about the sphere
+HUBER = 2.0  # s.d. beyond which a rim vertex pulls with constant force
+
+
+@dataclass(frozen=True, eq=False)
+class Eyes:
+    """Left and right eyeball of a face.
+
+    Attributes
+    ----------
+    centres : (2, 3) float64, mm, model frame
+    radii : (2,) float64, mm
+    templates : left and right EyeballTemplate
+    report : dict
+        ``inset_left_mm``, ``inset_right_mm`` (how far each sphere was moved in, the Delta of Pan et al.), ``seconds``.
+    """
+
+    centres: np.ndarray
+    radii: np.ndarray
+    templates: tuple[EyeballTemplate, EyeballTemplate]
+    report: dict[str, float]
+
+    def vertices(self, side: int, rotation: np.ndarray | None = None) -> np.ndarray:
+        """Vertices (k, 3), mm, of eyeball 0 (left) or 1 (right), turned by a rotation (3, 3) of the gaze."""
+        unit = self.templates[side].vertices
+        turned = unit if rotation is None else unit @ rotation.T
+        return self.centres[side] + self.radii[side] * turned
+
+    def looking(self, side: int, weights: dict[str, float]) -> np.ndarray:
+        """Vertices (k, 3), mm, for ``eyeLook*`` weights, which turn the eyeball."""
+        return self.vertices(side, gaze_rotation(SIDES[side], weights))
+
+
+def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
+    """A sphere for each socket, moved in until no lid touches it (Pan et al. 2024, section 4.3).
+
+    The template's eyeball is carried along by the similarity that best explains how the rim of the lids moved, refined
+    by a robust fit of the sphere to that rim, and then moved back along the resting gaze until every lid vertex stays
+    outside, in the neutral face and in each expression of the rig.
+
+    Parameters
+    ----------
+    face : AlignedFace
+    rig : Rig
+
+    Returns
+    -------
+    Eyes
+    """
+    started = time.perf_counter()
+    model = face.model
+    centres, radii, report = np.empty((2, 3)), np.empty(2), {}
+    for side, name in enumerate(SIDES):
+        rim = _rim(model, name)
+        centre, radius = model.eyes[side].placed(face.fit.identity)
+        scale, rotation, shift = similarity(face.fit.vertices[rim], face.vertices[rim])
+        centre, radius = _robust_sphere(face.vertices[rim], scale * rotation @ centre + shift, scale * radius)
+        lids = np.flatnonzero(model.region(f"eyelid_upper_{name}") | model.region(f"eyelid_lower_{name}"))
+        lids = np.union1d(lids, rim)
+        poses = np.concatenate([rig.neutral[lids][None], rig.neutral[lids] + rig.deltas[:, lids]])
+        inset = _inset(poses.reshape(-1, 3) - centre, radius * (1 + CLEARANCE))
+        centres[side], radii[side] = centre - inset * GAZE, radius
+        report[f"inset_{name}_mm"] = inset
+    report["seconds"] = time.perf_counter() - started
+    return Eyes(centres, radii, model.eyes, report)
+
+
+def _rim(model: MorphableModel, side: str) -> np.ndarray:
+    """Skin vertices that share a triangle with the socket: the inner edge of the lids."""
+    socket = model.region(f"socket_{side}")
+    touching = model.faces[socket[model.faces].any(1)]
+    return np.setdiff1d(touching, np.flatnonzero(socket))
+
+
+def _robust_sphere(points: np.ndarray, centre: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
+    """Sphere through points (k, 3) by Gauss-Newton with Huber weights, held near a given centre and radius.
+
+    A lid rim is nearly flat, so that spheres of very different size pass through it; the prior decides among them.
+    """
+    start = np.r_[centre, radius]
+    x = start.copy()
+    precision = 1.0 / (PRIOR * radius) ** 2
+    for _ in range(10):
+        offset = points - x[:3]
+        distance = np.linalg.norm(offset, axis=1)
+        residual = (distance - x[3]) / (RIM * radius)
+        weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residual), 1e-12))
+        J = np.column_stack([-offset / distance[:, None], -np.ones(len(points))]) / (RIM * radius)
+        H = J.T @ (weight[:, None] * J) + precision * np.eye(4)
+        x = x - np.linalg.solve(H, J.T @ (weight * residual) + precision * (x - start))
+    return x[:3], float(x[3])
+
+
+def _inset(points: np.ndarray, radius: float) -> float:
+    """How far a sphere about the origin must move along -GAZE until all points (k, 3) before it are outside.
+
+    A point at p leaves the sphere when |p + d GAZE| = radius.
+    """
+    ahead = points @ GAZE
+    beside = (points**2).sum(1) - ahead**2
+    near = (ahead > 0) & (beside < radius**2)
+    if not near.any():
+        return 0.0
+    return float(max(0.0, (np.sqrt(radius**2 - beside[near]) - ahead[near]).max()))

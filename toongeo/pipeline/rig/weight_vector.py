@@ -1,0 +1,48 @@
+"""Expression weights as a checked vector."""
+
+import difflib
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+
+def weight_vector(weights: Mapping[str, float] | np.ndarray | None, names: Sequence[str]) -> np.ndarray:
+    """Weights by name, or already a vector, as a vector in the order of ``names``.
+
+    Parameters
+    ----------
+    weights : mapping of name to weight, (k,) array, or None
+        None and names that are left out mean 0.
+    names : sequence of k names
+
+    Returns
+    -------
+    (k,) float64
+
+    Raises
+    ------
+    ValueError
+        If a name is unknown (the nearest ones are suggested), a vector has another length, or a weight is not finite.
+
+    Examples
+    --------
+    >>> weight_vector({"jawOpen": 0.5}, ["eyeBlinkLeft", "jawOpen"])
+    array([0. , 0.5])
+    """
+    if weights is None:
+        return np.zeros(len(names))
+    if isinstance(weights, Mapping):
+        beta = np.zeros(len(names))
+        for name, weight in weights.items():
+            if name not in names:
+                near = difflib.get_close_matches(name, names, n=3, cutoff=0.4)
+                hint = f"; did you mean {', '.join(near)}?" if near else ""
+                raise ValueError(f"weights: no expression {name!r}{hint}")
+            beta[names.index(name)] = weight
+    else:
+        beta = np.asarray(weights, float)
+        if beta.shape != (len(names),):
+            raise ValueError(f"weights: expected {len(names)} values, got shape {beta.shape}")
+    if not np.isfinite(beta).all():
+        raise ValueError("weights: expected finite values, got NaN or infinity")
+    return beta

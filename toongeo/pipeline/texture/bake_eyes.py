@@ -1,0 +1,92 @@
+"""The drawn eyes on the eyeballs."""
+
+from functools import lru_cache
+
+import cv2
+import numpy as np
+
+from toongeo.model import EyeballTemplate
+from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.rig.fit_eyes import Eyes
+from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
+from toongeo.pipeline.texture.face_picture import EYE_LEFT, EYE_RIGHT, MAX_SIDE, opening_mask
+from toongeo.render import Fragments, rasterize, sample_image, uv_to_px
+
+FADE = 0.12  # of the disc's width: over this distance the colour at the lids fades to white
+WHITE = np.array([244.0, 242.0, 238.0])  # unseen sclera, sRGB
+
+
+def bake_eyes(img: np.ndarray, face: AlignedFace, eyes: Eyes, texture: np.ndarray) -> np.ndarray:
+    """Atlas whose eye discs show the eyes of the picture where they are seen, and white elsewhere.
+
+    A texel is seen if it projects between the lids, that is inside the smooth curves through the eye landmarks.
+
+    Parameters
+    ----------
+    img : (H, W, 3) uint8 RGB
+    face : AlignedFace
+    eyes : Eyes
+    texture : (size, size, 3) uint8 RGB
+        From :func:`toongeo.bake_texture`; not written to.
+
+    Returns
+    -------
+    (size, size, 3) uint8 RGB
+    """
+    atlas = texture.copy()
+    landmarks = face.project(face.vertices[face.landmark_vertices])
+    for side, rims in enumerate((EYE_LEFT, EYE_RIGHT)):
+        crop, shift, scale = _eye_crop(img, landmarks[np.unique(np.concatenate(rims))])
+        opening = opening_mask((landmarks - shift + 0.5) * scale - 0.5, rims, crop.shape[:2])
+        opening = cv2.erode(opening.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0).astype(bool)
+        disc = _disc_fragments(eyes.templates[side], len(texture))
+        rows, columns = np.nonzero(disc.mask)
+        box = np.s_[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
+        corners = eyes.templates[side].faces[disc.face_ids[disc.mask]]
+        px = (face.project(eyes.vertices(side)) - shift + 0.5) * scale - 0.5
+        ahead = face.camera.view(eyes.vertices(side) - eyes.centres[side])[:, 2] / eyes.radii[side]
+        weights = disc.barycentrics[disc.mask]
+        at = np.einsum("kc,kcd->kd", weights, px[corners])
+        column = np.clip(np.rint(at[:, 0]), 0, crop.shape[1] - 1).astype(int)
+        row = np.clip(np.rint(at[:, 1]), 0, crop.shape[0] - 1).astype(int)
+        seen = opening[row, column] & (np.einsum("kc,kc->k", weights, ahead[corners]) > 0)
+        atlas[box] = _disc_image(atlas.shape, box, rows, columns, sample_image(crop, at), seen)
+    return atlas
+
+
+def _eye_crop(img: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """The picture about an eye, its corner in pixels of the picture, and its scale (reduced if very large)."""
+    margin = 0.3 * np.ptp(points, axis=0).max() + 2
+    bounds = np.array(img.shape[1::-1])
+    start = np.clip(np.floor(points.min(0) - margin), 0, bounds - 1).astype(int)
+    end = np.clip(np.ceil(points.max(0) + margin) + 1, start + 1, bounds).astype(int)
+    crop = img[start[1] : end[1], start[0] : end[0]]
+    scale = min(1.0, MAX_SIDE / 2 / max(crop.shape[:2]))
+    if scale < 1:
+        crop = cv2.resize(crop, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return np.ascontiguousarray(crop), start, scale
+
+
+@lru_cache(maxsize=8)
+def _disc_fragments(template: EyeballTemplate, size: int) -> Fragments:
+    return rasterize(uv_to_px(template.uv, size, size), template.faces, size, size)
+
+
+def _disc_image(
+    shape: tuple[int, ...],
+    box: tuple[slice, slice],
+    rows: np.ndarray,
+    columns: np.ndarray,
+    colours: np.ndarray,
+    seen: np.ndarray,
+) -> np.ndarray:
+    """The square of the atlas about a disc: seen colours, diffused outwards and faded to white."""
+    image, known = np.full(shape, WHITE), np.zeros(shape[:2], bool)
+    image[rows[seen], columns[seen]] = colours[seen]
+    known[rows[seen], columns[seen]] = True
+    image, known = image[box], known[box]
+    if known.any():
+        distance = cv2.distanceTransform((~known).astype(np.uint8), cv2.DIST_L2, 5)[..., None]
+        fade = np.clip(distance / (FADE * known.shape[1]), 0, 1)
+        image = (1 - fade) * diffuse_texture(image, known) + fade * WHITE
+    return np.clip(np.rint(image), 0, 255).astype(np.uint8)

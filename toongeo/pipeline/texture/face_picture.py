@@ -1,0 +1,163 @@
+"""The part of the picture that shows the face, and which of its pixels are skin."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.render import Fragments, rasterize
+
+MAX_SIDE = 1024  # px; a larger crop is reduced, which also filters it before it is sampled
+SPREAD = (7.0, 13.0)  # CIELAB units: least and largest distance from the skin's colour that still counts as skin
+FRONTAL = 0.2  # cosine to the viewing direction below which a surface is too oblique to be trusted
+# Upper and lower rim of each opening, as iBUG-68 points from corner to corner.
+OPENINGS = (
+    ((36, 37, 38, 39), (36, 41, 40, 39)),
+    ((42, 43, 44, 45), (42, 47, 46, 45)),
+    ((60, 61, 62, 63, 64), (60, 67, 66, 65, 64)),
+)
+BROWS = (slice(17, 22), slice(22, 27))
+EYE_RIGHT, EYE_LEFT, MOUTH = OPENINGS
+
+
+@dataclass(frozen=True, eq=False)
+class FacePicture:
+    """A crop of the picture with the face projected into it.
+
+    Attributes
+    ----------
+    pixels : (h, w, 3) uint8 RGB
+    points : (n, 2) float64
+        Where each vertex falls, in pixels of the crop (Pan et al. 2024, Eq. 12, not normalized).
+    cosines : (n,) float64
+        Between vertex normal and direction to the viewer.
+    fragments : Fragments
+        The face rasterized into the crop.
+    skin : (h, w) bool
+        Pixels that show the face; background, hair, eyes and open mouth are out.
+    sure : (h, w) bool
+        Among them those that have the colour of its skin: no outlines, brows or lips.
+    openings : (h, w) bool
+        Pixels between the lids and between the lips.
+    scale : float
+        Pixels of the crop per pixel of the picture.
+    origin : (2,) float64
+        Pixel of the picture at the corner of the crop.
+    """
+
+    pixels: np.ndarray
+    points: np.ndarray
+    cosines: np.ndarray
+    fragments: Fragments
+    skin: np.ndarray
+    sure: np.ndarray
+    openings: np.ndarray
+    scale: float
+    origin: np.ndarray
+
+    def place(self, px: np.ndarray) -> np.ndarray:
+        """Pixels of the picture (k, 2) as pixels of the crop."""
+        return (px - self.origin + 0.5) * self.scale - 0.5
+
+
+def face_picture(img: np.ndarray, face: AlignedFace) -> FacePicture:
+    """Crop a picture to the projected face and find the skin in it.
+
+    Skin is where the front of the face projects, less the eyes and the open mouth. Beyond the hull of the landmarks
+    (forehead, temples), where hair and background may cover the face, the colour must also be that of the skin.
+
+    Parameters
+    ----------
+    img : (H, W, 3) uint8 RGB
+    face : AlignedFace
+
+    Returns
+    -------
+    FacePicture
+    """
+    px = face.project(face.vertices)
+    low, high = px[face.region("face")].min(0), px[face.region("face")].max(0)
+    margin = 0.1 * (high - low).max()
+    bounds = np.array(img.shape[1::-1])
+    start = np.clip(np.floor(low - margin), 0, bounds - 1).astype(int)
+    end = np.clip(np.ceil(high + margin) + 1, start + 1, bounds).astype(int)
+    crop = img[start[1] : end[1], start[0] : end[0]]
+    scale = min(1.0, MAX_SIDE / max(crop.shape[:2]))
+    if scale < 1:
+        crop = cv2.resize(crop, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    points = (px - start + 0.5) * scale - 0.5
+    depth = face.camera.depth(face.vertices)
+    fragments = rasterize(np.column_stack([points, depth]), face.faces, *crop.shape[:2])
+    cosines = face.camera.view(face.normals + face.vertices)[:, 2] - face.camera.view(face.vertices)[:, 2]
+    landmarks = points[face.landmark_vertices]
+    openings = np.zeros(crop.shape[:2], bool)
+    for rims in OPENINGS:
+        openings |= opening_mask(landmarks, rims, crop.shape[:2])
+    front = _front_pixels(face, fragments, cosines) & ~openings
+    skin, sure = _skin_pixels(crop, landmarks, front)
+    return FacePicture(
+        np.ascontiguousarray(crop), points, cosines, fragments, skin, sure, openings, scale, start
+    )
+
+
+def opening_mask(
+    landmarks: np.ndarray, rims: tuple[tuple[int, ...], tuple[int, ...]], shape: tuple[int, int]
+) -> np.ndarray:
+    """Pixels (h, w) bool between two rims, each a smooth curve through its landmarks (68, 2)."""
+    upper, lower = (_curve(landmarks[list(rim)]) for rim in rims)
+    polygon = np.vstack([upper, lower[::-1]])
+    mask = np.zeros(shape, np.uint8)
+    cv2.fillPoly(mask, [np.round(polygon * 16).astype(np.int32)], 1, shift=4)
+    return mask.astype(bool)
+
+
+def _curve(points: np.ndarray, samples: int = 24) -> np.ndarray:
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1) + 1e-9)]
+    return CubicSpline(length, points)(np.linspace(0, length[-1], samples))
+
+
+def _front_pixels(face: AlignedFace, fragments: Fragments, cosines: np.ndarray) -> np.ndarray:
+    """Pixels covered by triangles of the region ``face`` that look towards the camera."""
+    wanted = (face.region("face")[face.faces].all(1)) & (cosines[face.faces].mean(1) > FRONTAL)
+    return fragments.mask & wanted[fragments.face_ids]
+
+
+def _skin_colour_distance(crop: np.ndarray, inner: np.ndarray, blur: float) -> tuple[np.ndarray, float]:
+    """Distance (h, w) of each pixel to the colour of the skin, and the distance within which it may be skin.
+
+    CIELAB with halved lightness, because shading changes lightness more than hue.
+    """
+    lab = cv2.cvtColor(cv2.GaussianBlur(crop, (0, 0), blur), cv2.COLOR_RGB2LAB).astype(np.float32)
+    lab[..., 0] *= 0.5
+    distance = np.linalg.norm(lab - np.median(lab[inner], axis=0), axis=2)
+    return distance, float(np.clip(2.5 * np.median(distance[inner]), *SPREAD))
+
+
+def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Front pixels that show the face, and among them those that surely have the colour of its skin.
+
+    Within the landmarks' hull everything is the face (brows, shadows, outlines) but for broad areas of another colour
+    that reach in from outside, which are hair. Beyond the hull only the colour decides.
+    """
+    width = max(3, int(0.03 * np.ptp(landmarks[:, 0])))
+    corners = np.round(landmarks).astype(np.int32)
+    brows = np.zeros(front.shape, np.uint8)  # strokes a little thicker than a brow
+    cv2.polylines(brows, [corners[brow] for brow in BROWS], False, 1, 2 * width)
+    hull = brows.copy()
+    cv2.fillConvexPoly(hull, cv2.convexHull(corners), 1)
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * width + 1, 2 * width + 1))
+    # What lies beyond the picture is unknown, so its edge erodes too.
+    eroded = cv2.erode(hull, disc, borderType=cv2.BORDER_CONSTANT, borderValue=0)
+    inner = (eroded | brows).astype(bool) & front
+    if not inner.any():
+        return front, front
+    distance, spread = _skin_colour_distance(crop, inner, 0.3 * width)
+    broad = cv2.morphologyEx((front & (distance > spread)).astype(np.uint8), cv2.MORPH_OPEN, disc)
+    _, labels = cv2.connectedComponents(broad)
+    reaching = np.setdiff1d(np.unique(labels[(hull == 0) & (broad > 0)]), 0)
+    hair = cv2.dilate(np.isin(labels, reaching).astype(np.uint8), disc[::2, ::2]).astype(bool)
+    likely = cv2.erode((front & (distance < spread)).astype(np.uint8), disc[::2, ::2]).astype(bool)
+    hair &= ~brows.astype(bool)
+    return (inner | likely) & ~hair, likely & ~hair
