@@ -1,0 +1,112 @@
+"""The coarse face: what `fit_3dmm` returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from toongeo.model.morphable_model import MorphableModel
+    from toongeo.render.camera import ScaledOrthographicCamera
+
+__all__ = ["FaceFit", "FitReport"]
+
+
+@dataclass(frozen=True)
+class FitReport:
+    """How a fit went.
+
+    Attributes
+    ----------
+    algorithm, status : str
+        nlopt's names; the status is that of the last pass.
+    passes, evaluations : int
+        Placements of the jaw points; calls of the loss in all passes.
+    landmark_loss, prior_loss : float
+        Eq. 4 (errors in outer-eye distances) and Eq. 6 of Pan et al. 2024, unweighted.
+    loss : float
+        Their weighted sum, Eq. 3.
+    rms_px : float
+        Root mean square distance of the inner landmarks (17-67) that are there.
+    rms_percent : float
+        The same in percent of the distance of the outer eye corners (36, 45) in the picture, or in the
+        fit when one of them is missing. Both are NaN when no inner landmark is there.
+    warnings : tuple of str
+        What seems odd about the landmarks, from `toongeo.io.check_landmarks`.
+    seconds : float
+    """
+
+    algorithm: str
+    status: str
+    passes: int
+    evaluations: int
+    landmark_loss: float
+    prior_loss: float
+    loss: float
+    rms_px: float
+    rms_percent: float
+    warnings: tuple[str, ...]
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class FaceFit:
+    """A morphable model posed and shaped after a picture.
+
+    Attributes
+    ----------
+    identity : (80,) float64
+        Standard deviations.
+    expression : (64,) float64
+        Named expressions in [0, 1], the others in standard deviations.
+    camera : ScaledOrthographicCamera
+    landmark_vertices : (68,) int64
+        Vertices of the landmarks as this pose shows them: jaw points lie on the outline of the head.
+    model : MorphableModel
+    report : FitReport
+    albedo, light : None
+        Left for the photometric term.
+    """
+
+    identity: NDArray[np.float64]
+    expression: NDArray[np.float64]
+    camera: ScaledOrthographicCamera
+    landmark_vertices: NDArray[np.int64]
+    model: MorphableModel
+    report: FitReport
+    albedo: NDArray[np.float64] | None = None
+    light: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        for array in (self.identity, self.expression, self.landmark_vertices, self.albedo, self.light):
+            if array is not None:
+                array.setflags(write=False)
+
+    @cached_property
+    def vertices(self) -> NDArray[np.float64]:
+        """Vertices (n, 3), mm, model frame; read-only."""
+        V = self.model.vertices(self.identity, self.expression)
+        V.setflags(write=False)
+        return V
+
+    @property
+    def faces(self) -> NDArray[np.int64]:
+        """Triangles (m, 3) of the model."""
+        return self.model.faces
+
+    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Points (k, 3), mm, model frame -> pixels (k, 2)."""
+        return self.camera.project(points)
+
+    def region(self, name: str) -> NDArray[np.bool_]:
+        """Mask (n,) of a named region of the model, such as ``"face"`` or ``"lips"``."""
+        return self.model.region(name)
+
+    def expression_weights(self) -> dict[str, float]:
+        """The named expressions with their weights in [0, 1]."""
+        named = self.model.expression_names[: self.model.n_named]
+        return {name: float(weight) for name, weight in zip(named, self.expression, strict=False)}

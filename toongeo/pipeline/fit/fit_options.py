@@ -1,0 +1,63 @@
+"""What can be set in a fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+__all__ = ["FitOptions"]
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """Weights and limits of `fit_3dmm`; the defaults were found on 3D ground truth.
+
+    Attributes
+    ----------
+    landmark_weight, prior_weight : float
+        ``w_l`` and ``w_r`` of Eq. 3 (Pan et al. 2024). Landmark errors are measured in outer-eye
+        distances, so ``prior_weight * 68`` is about the variance of a landmark in that unit.
+    identity_weight, expression_weight : float
+        ``w_id`` and ``w_exp`` of Eq. 6.
+    jaw_weight : float
+        ``w_n`` of Eq. 4 for the 17 jaw points; the inner points have 1. Where an annotator puts a jaw
+        point is a matter of taste, and with full weight they made the face worse in 3D than the mean face
+        is.
+    jaw_tangent : float in [0, 1]
+        How much an error along the jaw's outline counts against one across it.
+    max_deviation : float
+        Bound of identity and unnamed expression coefficients, in standard deviations.
+    max_passes : int
+        How often at most the jaw points are placed anew on their lines.
+    tolerance : float
+        Relative change of the loss at which a pass stops.
+    max_evaluations : int
+        Of the loss, in one pass.
+
+    Raises
+    ------
+    ValueError
+        If a weight is negative or not finite, or a limit is not positive.
+    """
+
+    landmark_weight: float = 1.0
+    prior_weight: float = 1.5e-5
+    identity_weight: float = 1.0
+    expression_weight: float = 6.0
+    jaw_weight: float = 0.02
+    jaw_tangent: float = 0.35
+    max_deviation: float = 3.0
+    max_passes: int = 4
+    tolerance: float = 1e-7
+    max_evaluations: int = 2000
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            limit = field.name.startswith(("max_", "tolerance", "landmark_"))
+            if not (np.isfinite(value) and (value > 0 if limit else value >= 0)):
+                wanted = "a finite number > 0" if limit else "a finite number >= 0"
+                raise ValueError(f"{field.name}: expected {wanted}, got {value!r}")
+        if self.jaw_tangent > 1:
+            raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")

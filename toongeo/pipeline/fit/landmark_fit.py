@@ -1,0 +1,169 @@
+"""The optimisation problem of a landmark fit, and the way to its solution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.model.ibug68 import INNER, PARTS
+from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
+from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
+from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
+from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
+from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.prior_loss import PriorLoss
+from toongeo.pipeline.fit.total_loss import TotalLoss
+from toongeo.pipeline.fit.unknowns import Unknowns
+from toongeo.render.camera import ScaledOrthographicCamera
+
+__all__ = ["LandmarkFit", "Solution"]
+
+Floats = NDArray[np.float64]
+
+_FEWEST = 6  # points from which the affine camera of the first pose is overdetermined
+# Box of the pose: a quarter turn from the first one, in each direction four times as large, 200 mm away.
+_TURN, _LOG_SCALE, _SHIFT_MM = np.pi / 2, np.log(4.0), 200.0
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Coefficients (c,) and camera at the minimum, the landmarks of that pose, and how it was reached."""
+
+    coefficients: Floats
+    camera: ScaledOrthographicCamera
+    landmark_vertices: NDArray[np.int64]
+    landmark_loss: float
+    prior_loss: float
+    loss: float
+    status: str
+    passes: int
+    evaluations: int
+
+
+@dataclass(frozen=True, eq=False)
+class LandmarkFit:
+    """Everything that stays the same while the jaw points are placed anew.
+
+    Attributes
+    ----------
+    unknowns : Unknowns
+    basis : LandmarkBasis
+    frame : CanonicalFrame
+    seen : (k,) int
+        Landmarks that are there.
+    points : (k, 2) float
+        These in the canonical frame, mm.
+    weights : (k, 2, 2) float, 1/mm^2
+        Their weights in Eq. 4, with errors in outer-eye distances.
+    prior : PriorLoss
+    bounds : two (n,) arrays
+    options : FitOptions
+    """
+
+    unknowns: Unknowns
+    basis: LandmarkBasis
+    frame: CanonicalFrame
+    seen: NDArray[np.int64]
+    points: Floats
+    weights: Floats
+    prior: PriorLoss
+    bounds: tuple[Floats, Floats]
+    options: FitOptions
+
+    @classmethod
+    def of(cls, model: MorphableModel, pixels: Floats, options: FitOptions) -> LandmarkFit:
+        """The problem for landmarks (68, 2) px; NaN rows are missing."""
+        unknowns = Unknowns(len(model.identity), len(model.expression))
+        basis = landmark_basis(model)
+        seen = np.flatnonzero(np.isfinite(pixels).all(axis=1))
+        # The jaw's vertices depend on the pose, so the first pose leaves the jaw out while enough is left.
+        posing = np.intersect1d(seen, INNER)
+        posing = posing if len(posing) >= _FEWEST else seen
+        frame = canonical_frame(basis.at(basis.landmarks[posing])[0], pixels[posing])
+        points = np.full((68, 2), np.nan)
+        points[seen] = frame.from_pixels(pixels[seen])
+        return cls(
+            unknowns=unknowns,
+            basis=basis,
+            frame=frame,
+            seen=seen,
+            points=points[seen],
+            weights=_weights(points, options)[seen] / basis.outer_eye_mm**2,
+            prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight),
+            bounds=_bounds(model, unknowns, options.max_deviation),
+            options=options,
+        )
+
+    def solve(self, algorithm: str) -> Solution:
+        """Minimise, place the jaw points anew, and again, until they stay or ``max_passes`` are done."""
+        x = np.zeros(self.unknowns.size)
+        placed = self._visible(x)
+        passes = evaluations = 0
+        while passes < self.options.max_passes:
+            loss = self.loss(placed)
+            minimum = nlopt_minimize(
+                loss,
+                x,
+                bounds=self.bounds,
+                scale=1 / np.sqrt(loss.curvature(x)),
+                algorithm=algorithm,
+                tolerance=self.options.tolerance,
+                max_evaluations=self.options.max_evaluations,
+            )
+            x = minimum.x
+            passes, evaluations = passes + 1, evaluations + minimum.evaluations
+            before, placed = placed, self._visible(x)
+            if np.array_equal(before, placed):
+                break
+        return Solution(
+            coefficients=x[self.unknowns.shape],
+            camera=self.frame.camera(x, self.unknowns),
+            landmark_vertices=placed,
+            landmark_loss=loss.landmark(x)[0],
+            prior_loss=loss.prior(x)[0],
+            loss=minimum.value,
+            status=minimum.status,
+            passes=passes,
+            evaluations=evaluations,
+        )
+
+    def loss(self, landmark_vertices: NDArray[np.int64]) -> TotalLoss:
+        """Eq. 3 with the landmarks (68,) at these vertices."""
+        mean, modes = self.basis.at(landmark_vertices[self.seen])
+        landmark = LandmarkLoss(
+            unknowns=self.unknowns,
+            points=self.points,
+            weights=self.weights,
+            count=len(landmark_vertices),
+            mean=mean,
+            modes=modes,
+            rotation0=self.frame.rotation0,
+        )
+        return TotalLoss(landmark, self.prior, self.options.landmark_weight, self.options.prior_weight)
+
+    def _visible(self, x: Floats) -> NDArray[np.int64]:
+        return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
+
+
+def _weights(points: Floats, options: FitOptions) -> Floats:
+    """Weights (68, 2, 2) of Eq. 4."""
+    weights = np.tile(np.eye(2), (68, 1, 1))
+    weights[PARTS["jaw"]] = options.jaw_weight * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
+    return weights
+
+
+def _bounds(model: MorphableModel, unknowns: Unknowns, deviation: float) -> tuple[Floats, Floats]:
+    """Lower and upper bounds (n,) of all unknowns."""
+    upper = np.full(unknowns.size, deviation)
+    upper[unknowns.rotation], upper[unknowns.log_scale] = _TURN, _LOG_SCALE
+    upper[unknowns.translation] = _SHIFT_MM
+    lower = -upper
+    named = slice(unknowns.n_identity, unknowns.n_identity + model.n_named)
+    lower[named], upper[named] = 0.0, 1.0
+    if "mouthClose" in model.expression_names:
+        upper[unknowns.n_identity + model.expression_index("mouthClose")] = 0.0
+    return lower, upper

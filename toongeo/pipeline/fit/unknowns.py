@@ -1,0 +1,45 @@
+"""Where each unknown of the fit lies in the vector that is optimised."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """Layout ``[identity, expression, rotation vector (3), log scale, translation (2)]`` of the vector
+    ``x``."""
+
+    n_identity: int
+    n_expression: int
+
+    @property
+    def identity(self) -> slice:
+        return slice(0, self.n_identity)
+
+    @property
+    def expression(self) -> slice:
+        return slice(self.n_identity, self.n_coefficients)
+
+    @property
+    def shape(self) -> slice:
+        """Identity and expression together: all that the vertices are linear in."""
+        return slice(0, self.n_coefficients)
+
+    @property
+    def rotation(self) -> slice:
+        return slice(self.n_coefficients, self.n_coefficients + 3)
+
+    @property
+    def log_scale(self) -> int:
+        return self.n_coefficients + 3
+
+    @property
+    def translation(self) -> slice:
+        return slice(self.n_coefficients + 4, self.size)
+
+    @property
+    def n_coefficients(self) -> int:
+        return self.n_identity + self.n_expression
+
+    @property
+    def size(self) -> int:
+        return self.n_coefficients + 6
