@@ -5,9 +5,9 @@ The stages, in the order in which :func:`make_avatar` calls them:
 1. :func:`read_image`, :func:`read_landmarks` - the picture and its points.
 2. :func:`fit_3dmm` - a morphable model posed and shaped by the landmarks.
 3. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.
-4. :func:`bake_texture` (with :func:`diffuse_texture`) - the picture on the UV atlas, unseen parts filled by diffusion.
-5. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face.
-6. :func:`fit_eyes` - eyeballs in their sockets.
+4. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face.
+5. :func:`fit_eyes`, :func:`fit_lids` - eyeballs in their sockets, lids that close over them.
+6. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
 7. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
 
 Every name is imported when it is first used, so ``import toongeo`` itself costs almost nothing.
@@ -35,13 +35,16 @@ __getattr__, __dir__, __all__ = attach(
         "DeformationTransfer": "geometry",
         "fit_3dmm": "pipeline",
         "FaceFit": "pipeline",
+        "FitOptions": "pipeline",
         "align_face": "pipeline",
         "AlignedFace": "pipeline",
         "diffuse_texture": "pipeline",
         "bake_texture": "pipeline",
+        "bake_eyes": "pipeline",
         "build_rig": "pipeline",
         "Rig": "pipeline",
         "fit_eyes": "pipeline",
+        "fit_lids": "pipeline",
         "Eyes": "pipeline",
     },
 )

@@ -7,9 +7,7 @@ from types import ModuleType
 from typing import Any
 
 
-def attach(
-    package: str, modules: Mapping[str, str]
-) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+def attach(package: str, modules: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Module-level ``__getattr__``, ``__dir__`` and ``__all__`` that import a name when it is first used (PEP 562).
 
     Parameters
@@ -19,14 +17,6 @@ def attach(
     modules
         Public name -> module, relative to the package, that defines it. A module may bear the name of its verb:
         ``package.verb`` is the verb, whichever was imported first.
-
-    Examples
-    --------
-    In ``package/__init__.py``:
-
-    >>> __getattr__, __dir__, __all__ = attach("json", {"JSONDecoder": "decoder"})
-    >>> __getattr__("JSONDecoder").__name__
-    'JSONDecoder'
     """
     names = sorted(modules)
 

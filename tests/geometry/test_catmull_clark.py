@@ -7,7 +7,7 @@ from toongeo.geometry.catmull_clark import catmull_clark
 
 CUBE = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
 CUBE_V = np.array(
-    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], float
+    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1.0]]
 )
 
 
@@ -18,7 +18,7 @@ def grid(nx, ny):
     return np.stack([x.ravel(), y.ravel()], axis=1).astype(float), quads
 
 
-@pytest.mark.parametrize("quads, n", [(CUBE, 8), (grid(4, 3)[1], 20), (np.array([[5, 2, 7, 1]]), 9)])
+@pytest.mark.parametrize(("quads", "n"), [(CUBE, 8), (grid(4, 3)[1], 20), (np.array([[5, 2, 7, 1]]), 9)])
 def test_rows_sum_to_one_and_counts_agree(quads, n):
     S, quads1 = catmull_clark(quads, n)
     sides = np.sort(np.stack([quads, np.roll(quads, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
@@ -41,7 +41,8 @@ def test_cube_has_the_known_vertices():
 
 def test_edge_points_come_sorted_and_children_keep_corner_and_winding():
     S, quads1 = catmull_clark(CUBE, 8)
-    edges = np.unique(np.sort(np.stack([CUBE, np.roll(CUBE, -1, axis=1)], axis=2).reshape(-1, 2), axis=1), axis=0)
+    sides = np.stack([CUBE, np.roll(CUBE, -1, axis=1)], axis=2).reshape(-1, 2)
+    edges = np.unique(np.sort(sides, axis=1), axis=0)
     number = {tuple(edge): 8 + k for k, edge in enumerate(edges)}
     for k, quad in enumerate(CUBE):
         for c in range(4):
@@ -97,7 +98,7 @@ def test_touching_fans_and_lonely_vertices_stay():
 
 
 @pytest.mark.parametrize(
-    "quads, n, message",
+    ("quads", "n", "message"),
     [
         (np.zeros((0, 4), int), 4, r"quads: expected an integer array of shape \(q, 4\)"),
         ([[0, 1, 2]], 3, r"quads: expected an integer array of shape \(q, 4\)"),

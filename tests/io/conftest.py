@@ -1,42 +1,9 @@
-"""Scenes to write, and the JavaScript that reads what was written."""
-
-import json
-import os
-import shutil
-import subprocess
-from pathlib import Path
+"""Scenes to write."""
 
 import numpy as np
 import pytest
 
 from toongeo.io import Scene, SceneAnimation, SceneMesh
-
-WEB = Path(__file__).parents[1] / "web"
-
-
-@pytest.fixture(scope="session")
-def node():
-    """Runs a script of tests/web on files and gives what it prints.
-
-    Skips without node or its packages (``npm ci --prefix tests/web``); fails if TOONGEO_REQUIRE_WEB=1.
-    """
-    missing = None
-    if shutil.which("node") is None:
-        missing = "node is not installed"
-    elif not (WEB / "node_modules" / "gltf-validator").is_dir():
-        missing = "run `npm ci --prefix tests/web` first"
-    if missing and os.environ.get("TOONGEO_REQUIRE_WEB") == "1":
-        pytest.fail(missing)
-    if missing:
-        pytest.skip(missing)
-
-    def run(script, *files):
-        command = ["node", str(WEB / script), *map(str, files)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
-        assert done.returncode == 0, done.stderr
-        return json.loads(done.stdout)
-
-    return run
 
 
 def grid(size, rng):
@@ -67,21 +34,15 @@ def scene():
     targets[0, 3:7] = rng.standard_normal((4, 3))
     targets[2] = rng.standard_normal((len(vertices), 3))
     names = ("jawOpen", "nothing", '"><script>alert(1)</script> 顔 \\')
-    head = SceneMesh(
-        "head", vertices, faces, uv, uv_faces, texture=texture, targets=targets, target_names=names
-    )
+    head = SceneMesh("head", vertices, faces, uv, uv_faces, texture=texture, targets=targets, target_names=names)
     eyes = []
     for side, x in (("eye_left", 30.0), ("eye_right", -30.0)):
         v, f, *_ = grid(4, rng)
         look = {"targets": rng.standard_normal((1, len(v), 3)), "target_names": ("eyeLookUp",)}
         eyes.append(
-            SceneMesh(
-                side, v + np.array([x, 0, 5]), f, pivot=np.array([x, 1.25, 5]), color=(1, 0.5, 0), **look
-            )
+            SceneMesh(side, v + np.array([x, 0, 5]), f, pivot=np.array([x, 1.25, 5]), color=(1, 0.5, 0), **look)
         )
-    plain = SceneMesh(
-        "teeth", vertices[:, [1, 2, 0]], faces, uv, uv_faces, texture=texture.copy(), roughness=0.2
-    )
+    plain = SceneMesh("teeth", vertices[:, [1, 2, 0]], faces, uv, uv_faces, texture=texture.copy(), roughness=0.2)
     times = np.linspace(0, 2, 5)
     weights = {"head": rng.uniform(0, 1, (5, 3)), "eye_left": rng.uniform(0, 1, (5, 1))}
     angle = 0.3 * np.sin(times)

@@ -55,9 +55,7 @@ def test_one_bad_target_leaves_nothing(tmp_path, bad):
     assert names(tmp_path) == before and (tmp_path / "a").read_bytes() == b"old"
 
 
-@pytest.mark.parametrize(
-    ("step", "error"), [("fsync", OSError), ("replace", OSError), ("fsync", KeyboardInterrupt)]
-)
+@pytest.mark.parametrize(("step", "error"), [("fsync", OSError), ("replace", OSError), ("fsync", KeyboardInterrupt)])
 def test_failure_midway(tmp_path, monkeypatch, step, error):
     calls = []
 

@@ -93,26 +93,19 @@ def test_writing_what_was_read_gives_the_same_bytes(tmp_path, scene, with_animat
 def test_animation(document, scene):
     animation = document.json["animations"][0]
     tracks = {
-        (c["target"]["node"], c["target"]["path"]): animation["samplers"][c["sampler"]]
-        for c in animation["channels"]
+        (c["target"]["node"], c["target"]["path"]): animation["samplers"][c["sampler"]] for c in animation["channels"]
     }
     assert list(tracks) == [(0, "weights"), (1, "weights"), (1, "rotation"), (2, "rotation")]
     for (node, path), sampler in tracks.items():
         name = scene.meshes[node].name
-        expected = (
-            scene.animation.weights[name].ravel() if path == "weights" else scene.animation.rotations[name]
-        )
+        expected = scene.animation.weights[name].ravel() if path == "weights" else scene.animation.rotations[name]
         np.testing.assert_array_equal(document.accessors[sampler["output"]], expected.astype(np.float32))
-        np.testing.assert_array_equal(
-            document.accessors[sampler["input"]], scene.animation.times.astype(np.float32)
-        )
+        np.testing.assert_array_equal(document.accessors[sampler["input"]], scene.animation.times.astype(np.float32))
 
 
 def test_tolerance_drops_what_is_small_in_every_coordinate(tmp_path):
     targets = np.array([[[9e-4, 9e-4, 9e-4], [2e-3, 1e-9, 0], [0, 0, 0], [0, 0, 0]]])
-    mesh = SceneMesh(
-        "m", np.eye(4, 3), np.array([[0, 1, 2], [0, 1, 3]]), targets=targets, target_names=("t",)
-    )
+    mesh = SceneMesh("m", np.eye(4, 3), np.array([[0, 1, 2], [0, 1, 3]]), targets=targets, target_names=("t",))
     write_glb(tmp_path / "a.glb", Scene((mesh,)))
     got = glb_scene(read_glb(tmp_path / "a.glb")).meshes[0].targets
     np.testing.assert_allclose(got[0, :2], [[0, 0, 0], [2e-3, 1e-9, 0]], rtol=1e-6)

@@ -22,9 +22,7 @@ def large_scene():
 @pytest.mark.parametrize("normal_deltas", [False, True])
 @pytest.mark.parametrize("still", [False, True])
 def test_valid(tmp_path, node, scene, normal_deltas, still):
-    write_glb(
-        tmp_path / "a.glb", replace(scene, animation=None) if still else scene, normal_deltas=normal_deltas
-    )
+    write_glb(tmp_path / "a.glb", replace(scene, animation=None) if still else scene, normal_deltas=normal_deltas)
     (verdict,) = node("validate.mjs", tmp_path / "a.glb")
     assert verdict["messages"] == []
     assert verdict["info"]["hasMorphTargets"] and verdict["info"]["hasTextures"]

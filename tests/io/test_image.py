@@ -84,9 +84,7 @@ def test_sixteen_bits(tmp_path, channels, kind):
     stored = pixels[..., [2, 1, 0, 3][:channels]] if channels > 1 else pixels
     assert cv2.imwrite(str(tmp_path / f"a.{kind}"), stored)
     expected = on_white(pixels, 65535) if channels == 4 else pixels / 257
-    np.testing.assert_allclose(
-        read_image(tmp_path / f"a.{kind}"), np.broadcast_to(expected, (9, 5, 3)), atol=1.5
-    )
+    np.testing.assert_allclose(read_image(tmp_path / f"a.{kind}"), np.broadcast_to(expected, (9, 5, 3)), atol=1.5)
 
 
 def test_sixteen_bits_that_repeat_eight_are_exact(tmp_path, rgb):
@@ -166,12 +164,7 @@ def png_of_size(width, height):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return (
-        b"\x89PNG\r\n\x1a\n"
-        + chunk(b"IHDR", header)
-        + chunk(b"IDAT", zlib.compress(b""))
-        + chunk(b"IEND", b"")
-    )
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"")) + chunk(b"IEND", b"")
 
 
 def encoded(kind, pixels):

@@ -72,16 +72,12 @@ def test_forms_of_faces(tmp_path):
     f 5/2 1/1 2/2 3/1 4/1\n"""
     (tmp_path / "a.obj").write_text(text.replace("\n    ", "\n"))
     got = read_obj(tmp_path / "a.obj")
-    np.testing.assert_array_equal(
-        got.faces, [[0, 1, 2, -1, -1], [0, 1, 2, 3, -1], [0, 1, 2, -1, -1], [4, 0, 1, 2, 3]]
-    )
+    np.testing.assert_array_equal(got.faces, [[0, 1, 2, -1, -1], [0, 1, 2, 3, -1], [0, 1, 2, -1, -1], [4, 0, 1, 2, 3]])
     np.testing.assert_array_equal(got.uv_faces[[1, 3]], [[0, 1, -1, -1, -1], [1, 0, 1, 0, 0]])
     assert got.objects == ("", "second group", "third")
     np.testing.assert_array_equal(got.face_object, [0, 1, 1, 2])
     faces, uv_faces, polygon = got.triangles()
-    np.testing.assert_array_equal(
-        faces, [[0, 1, 2], [0, 1, 2], [0, 2, 3], [0, 1, 2], [4, 0, 1], [4, 1, 2], [4, 2, 3]]
-    )
+    np.testing.assert_array_equal(faces, [[0, 1, 2], [0, 1, 2], [0, 2, 3], [0, 1, 2], [4, 0, 1], [4, 1, 2], [4, 2, 3]])
     np.testing.assert_array_equal(uv_faces[4:], [[1, 0, 1], [1, 1, 0], [1, 0, 0]])
     np.testing.assert_array_equal(polygon, [0, 1, 1, 2, 3, 3, 3])
 

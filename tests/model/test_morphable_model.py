@@ -23,7 +23,13 @@ def test_refining_the_modes_refines_the_face(model, rng):
 
 def test_the_model_is_loaded_once_and_read_only(model):
     assert default_model() is model
-    for array in (model.mean, model.identity, model.regions["face"], model.contour_lines[0], model.eyes[0].uv):
+    for array in (
+        model.mean,
+        model.identity,
+        model.regions["face"],
+        model.contour_lines[0],
+        model.eyes[0].uv,
+    ):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
 

@@ -6,9 +6,7 @@ from toongeo.render import ScaledOrthographicCamera
 
 @pytest.fixture
 def camera():
-    return ScaledOrthographicCamera.look(
-        25.0, -15.0, 40.0, size=(300, 400), centre=(3.0, -20.0, 7.0), extent=250.0
-    )
+    return ScaledOrthographicCamera.look(25.0, -15.0, 40.0, size=(300, 400), centre=(3.0, -20.0, 7.0), extent=250.0)
 
 
 def points(count=50):

@@ -41,9 +41,7 @@ def grid(count, step, slope=0.0):
     points = np.column_stack([x.ravel(), y.ravel(), slope * (x + 0.3 * y).ravel()])
     index = np.arange(count * count).reshape(count, count)
     a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
-    return points, np.concatenate(
-        [np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)]
-    )
+    return points, np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
 
 
 @pytest.mark.parametrize("cull_back", [False, True])

@@ -37,9 +37,7 @@ def sphere(radius=12.0, count=40, **keywords):
 
 @pytest.mark.parametrize("supersample", [1, 2, 3])
 def test_unlit_colour_comes_out_as_it_went_in(supersample):
-    picture = render_mesh(
-        square(colour=[0.2, 0.6, 1.0]), CAMERA, 32, shading="unlit", supersample=supersample
-    )
+    picture = render_mesh(square(colour=[0.2, 0.6, 1.0]), CAMERA, 32, shading="unlit", supersample=supersample)
     assert picture.dtype == np.uint8 and picture.shape == (32, 32, 3)
     assert (picture == [51, 153, 255]).all()
 
@@ -81,9 +79,7 @@ def test_lambert_at_every_pixel_of_a_sphere():
 
 
 def test_light_stays_with_the_camera():
-    turned = ScaledOrthographicCamera(
-        1.0, ScaledOrthographicCamera.look(50.0, 20.0).rotation, CAMERA.translation
-    )
+    turned = ScaledOrthographicCamera(1.0, ScaledOrthographicCamera.look(50.0, 20.0).rotation, CAMERA.translation)
     difference = render_mesh(sphere(), CAMERA, 32).astype(int) - render_mesh(sphere(), turned, 32)
     assert np.abs(difference).max() <= 6  # but for the facets of the outline
     assert np.abs(difference).mean() < 0.1
@@ -139,9 +135,7 @@ def test_background_picture_is_kept_where_nothing_is_drawn(supersample):
 
 def test_clay_shows_shape_not_colour():
     ball = sphere()
-    painted = Surface(
-        ball.vertices, ball.faces, colours=np.random.default_rng(2).random((len(ball.vertices), 3))
-    )
+    painted = Surface(ball.vertices, ball.faces, colours=np.random.default_rng(2).random((len(ball.vertices), 3)))
     clay = render_mesh(ball, CAMERA, 32, shading="clay")
     assert (clay == render_mesh(painted, CAMERA, 32, shading="clay")).all()
     grey = clay.astype(int).sum(axis=2)

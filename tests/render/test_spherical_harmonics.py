@@ -83,15 +83,11 @@ def test_turning_environment_and_surface_together_changes_nothing():
     light = np.random.default_rng(2).normal(size=(9, 3))
     # the turned environment is L(R^T w): project it on the basis again
     turned = sh_basis(directions).T @ (weights[:, None] * (sh_basis(directions @ R) @ light))
-    np.testing.assert_allclose(
-        irradiance(unit_vectors() @ R.T, turned), irradiance(unit_vectors(), light), atol=1e-12
-    )
+    np.testing.assert_allclose(irradiance(unit_vectors() @ R.T, turned), irradiance(unit_vectors(), light), atol=1e-12)
 
 
 def test_studio_light_comes_from_the_upper_left_and_is_neutral():
-    normals = np.array(
-        [[0.0, 0.0, 1.0], [-0.6, 0.0, 0.8], [0.6, 0.0, 0.8], [0.0, 0.6, 0.8], [0.0, -0.6, 0.8]]
-    )
+    normals = np.array([[0.0, 0.0, 1.0], [-0.6, 0.0, 0.8], [0.6, 0.0, 0.8], [0.0, 0.6, 0.8], [0.0, -0.6, 0.8]])
     shade = irradiance(normals, studio_light()) / np.pi
     front, left, right, up, down = shade[:, 0]
     assert left > right and up > down

@@ -29,6 +29,4 @@ def test_types():
     assert srgb_to_linear(np.zeros(2, np.float32)).dtype == np.float32
     assert linear_to_srgb(np.zeros(2, np.float32)).dtype == np.float32
     assert linear_to_srgb([0, 1]).dtype == np.float64
-    np.testing.assert_allclose(
-        srgb_to_linear(np.uint8([10, 200])), srgb_to_linear([10 / 255, 200 / 255]), rtol=1e-6
-    )
+    np.testing.assert_allclose(srgb_to_linear(np.uint8([10, 200])), srgb_to_linear([10 / 255, 200 / 255]), rtol=1e-6)

@@ -1,5 +1,26 @@
 """Meshes and operators; knows no faces."""
 
-from toongeo._lazy import attach
+from toongeo.geometry.catmull_clark import catmull_clark
+from toongeo.geometry.cotangent_laplacian import cotangent_laplacian
+from toongeo.geometry.deformation_transfer import DeformationTransfer, deformation_transfer
+from toongeo.geometry.laplacian_align import laplacian_align
+from toongeo.geometry.laplacian_aligner import LaplacianAligner
+from toongeo.geometry.self_intersections import self_intersections
+from toongeo.geometry.uniform_laplacian import uniform_laplacian
+from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.vertex_components import vertex_components
+from toongeo.geometry.vertex_normals import vertex_normals
 
-__getattr__, __dir__, __all__ = attach(__name__, {"catmull_clark": "catmull_clark"})
+__all__ = [
+    "DeformationTransfer",
+    "LaplacianAligner",
+    "catmull_clark",
+    "cotangent_laplacian",
+    "deformation_transfer",
+    "laplacian_align",
+    "self_intersections",
+    "uniform_laplacian",
+    "validate_mesh",
+    "vertex_components",
+    "vertex_normals",
+]

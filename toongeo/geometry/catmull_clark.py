@@ -8,6 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["catmull_clark"]
 
+_Entries = tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]  # rows, columns, values of a sparse matrix
+
 
 def catmull_clark(quads: ArrayLike, n_vertices: int) -> tuple[sp.csr_matrix, NDArray[np.int64]]:
     """One Catmull-Clark step, as a matrix: the subdivision is linear in the vertex positions.
@@ -68,7 +70,7 @@ def catmull_clark(quads: ArrayLike, n_vertices: int) -> tuple[sp.csr_matrix, NDA
         _edge_rules(quads, edges, edge_of_side, sides_of_edge, n_vertices),
         _entries(np.repeat(np.arange(q), 4) + (n_vertices + e), quads.ravel(), 0.25),
     ]
-    rows, columns, values = (np.concatenate(part) for part in zip(*blocks, strict=True))
+    rows, columns, values = _join(*blocks)
     S = sp.csr_matrix((values, (rows, columns)), shape=(n_vertices + e + q, n_vertices))
 
     following = n_vertices + edge_of_side  # side c runs from corner c to corner c + 1
@@ -85,9 +87,7 @@ def _checked_quads(quads: ArrayLike, n_vertices: int) -> NDArray[np.int64]:
         )
     quads = quads.astype(np.int64)
     if quads.min() < 0 or quads.max() >= n_vertices:
-        raise ValueError(
-            f"quads: expected indices in 0..{n_vertices - 1}, got {quads.min()}..{quads.max()}"
-        )
+        raise ValueError(f"quads: expected indices in 0..{n_vertices - 1}, got {quads.min()}..{quads.max()}")
     ordered = np.sort(quads, axis=1)
     repeats = (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)
     if repeats.any():
@@ -95,7 +95,7 @@ def _checked_quads(quads: ArrayLike, n_vertices: int) -> NDArray[np.int64]:
     return quads
 
 
-def _edges(quads, n):
+def _edges(quads: NDArray[np.int64], n: int) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Sorted unique edges (e, 2), the edge of each quad side (q, 4), and how many quads an edge has."""
     ends = np.stack([quads, np.roll(quads, -1, axis=1)], axis=2)
     key = ends.min(axis=2) * n + ends.max(axis=2)
@@ -106,15 +106,22 @@ def _edges(quads, n):
     return np.stack(np.divmod(unique, n), axis=1), inverse.reshape(quads.shape), count
 
 
-def _entries(rows, columns, values):
+def _entries(rows: NDArray[np.int64], columns: NDArray[np.int64], values: ArrayLike) -> _Entries:
     return rows, columns, np.broadcast_to(np.asarray(values, dtype=float), rows.shape)
 
 
-def _join(*entries):
-    return tuple(np.concatenate(part) for part in zip(*entries, strict=True))
+def _join(*entries: _Entries) -> _Entries:
+    rows, columns, values = (np.concatenate(part) for part in zip(*entries, strict=True))
+    return rows, columns, values
 
 
-def _edge_rules(quads, edges, edge_of_side, sides_of_edge, n):
+def _edge_rules(
+    quads: NDArray[np.int64],
+    edges: NDArray[np.int64],
+    edge_of_side: NDArray[np.int64],
+    sides_of_edge: NDArray[np.int64],
+    n: int,
+) -> _Entries:
     inner = sides_of_edge == 2
     row = n + np.arange(len(edges))
     # Mean of two ends and two quad points: 1/4 an end, 1/16 a corner of each quad. Boundary: the midpoint.
@@ -128,7 +135,9 @@ def _edge_rules(quads, edges, edge_of_side, sides_of_edge, n):
     )
 
 
-def _vertex_rules(quads, edges, sides_of_edge, n):
+def _vertex_rules(
+    quads: NDArray[np.int64], edges: NDArray[np.int64], sides_of_edge: NDArray[np.int64], n: int
+) -> _Entries:
     valence = np.bincount(quads.ravel(), minlength=n)
     rim = edges[sides_of_edge == 1]
     rim_count = np.bincount(rim.ravel(), minlength=n)

@@ -4,30 +4,42 @@ Axes and units are converted here and nowhere else. Every writer is atomic: on a
 half-written remains.
 """
 
-from toongeo._lazy import attach
+from toongeo.io.atomic_write import atomic_write
+from toongeo.io.check_landmarks import check_landmarks
+from toongeo.io.encode_glb import encode_glb
+from toongeo.io.encode_image import encode_image
+from toongeo.io.glb_scene import glb_scene
+from toongeo.io.read_glb import GlbDocument, read_glb
+from toongeo.io.read_image import read_image
+from toongeo.io.read_landmarks import read_landmarks
+from toongeo.io.read_obj import ObjData, read_obj
+from toongeo.io.scene import Scene, SceneAnimation, SceneMesh
+from toongeo.io.split_seams import split_seams
+from toongeo.io.write_glb import write_glb
+from toongeo.io.write_image import write_image
+from toongeo.io.write_landmarks import write_landmarks
+from toongeo.io.write_obj import write_obj
+from toongeo.io.write_ply import write_ply
 
-__getattr__, __dir__, __all__ = attach(
-    __name__,
-    {
-        "atomic_write": "atomic_write",
-        "check_landmarks": "check_landmarks",
-        "encode_glb": "encode_glb",
-        "encode_image": "encode_image",
-        "glb_scene": "glb_scene",
-        "GlbDocument": "read_glb",
-        "ObjData": "read_obj",
-        "read_glb": "read_glb",
-        "read_image": "read_image",
-        "read_landmarks": "read_landmarks",
-        "read_obj": "read_obj",
-        "Scene": "scene",
-        "SceneAnimation": "scene",
-        "SceneMesh": "scene",
-        "split_seams": "split_seams",
-        "write_glb": "write_glb",
-        "write_image": "write_image",
-        "write_landmarks": "write_landmarks",
-        "write_obj": "write_obj",
-        "write_ply": "write_ply",
-    },
-)
+__all__ = [
+    "GlbDocument",
+    "ObjData",
+    "Scene",
+    "SceneAnimation",
+    "SceneMesh",
+    "atomic_write",
+    "check_landmarks",
+    "encode_glb",
+    "encode_image",
+    "glb_scene",
+    "read_glb",
+    "read_image",
+    "read_landmarks",
+    "read_obj",
+    "split_seams",
+    "write_glb",
+    "write_image",
+    "write_landmarks",
+    "write_obj",
+    "write_ply",
+]

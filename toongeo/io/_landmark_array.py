@@ -34,9 +34,7 @@ def landmark_array(landmarks: ArrayLike, name: str = "landmarks") -> NDArray[np.
         raise ValueError(f"{name}: expected at least one point, but all rows are NaN")
     half = missing.any(axis=1) & ~missing.all(axis=1)
     if half.any():
-        raise ValueError(
-            f"{name}: a missing point has NaN in both coordinates; row {_first(half)} in one only"
-        )
+        raise ValueError(f"{name}: a missing point has NaN in both coordinates; row {_first(half)} in one only")
     return points
 
 

@@ -102,9 +102,7 @@ def check_landmarks(landmarks: ArrayLike, image_shape: Sequence[int] | None = No
             f"(misfit {misfit:.2f}, at most {_MISFIT_REFUSED}): another scheme, or another order?"
         )
     if misfit > _MISFIT_DOUBTED:
-        warnings.append(
-            f"landmarks are far from a frontal face (misfit {misfit:.2f}): a profile, another order?"
-        )
+        warnings.append(f"landmarks are far from a frontal face (misfit {misfit:.2f}): a profile, another order?")
     return warnings + _doubts(points, usable, pose)
 
 
@@ -125,9 +123,7 @@ def _refuse_flat(points: NDArray[np.float64]) -> None:
         raise ValueError("landmarks: expected a face, but all points lie on one line")
 
 
-def _pose(
-    points: NDArray[np.float64], layout: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], float, float]:
+def _pose(points: NDArray[np.float64], layout: NDArray[np.float64]) -> tuple[NDArray[np.float64], float, float]:
     """Best orthogonal map layout -> points (either handedness), and the misfits of the best rotation and
     reflection.
 

@@ -69,9 +69,7 @@ def encode_glb(scene: Scene, *, normal_deltas: bool = False, tolerance_mm: float
     return builder.encode()
 
 
-def _primitive(
-    builder: GlbBuilder, mesh: SceneMesh, normal_deltas: bool, tolerance_mm: float
-) -> dict[str, Any]:
+def _primitive(builder: GlbBuilder, mesh: SceneMesh, normal_deltas: bool, tolerance_mm: float) -> dict[str, Any]:
     uv_faces = mesh.faces if mesh.uv_faces is None else mesh.uv_faces
     vertex, uv, faces = split_seams(mesh.faces, uv_faces)
     local = mesh.vertices if mesh.pivot is None else mesh.vertices - mesh.pivot

@@ -56,7 +56,5 @@ def _pixels(img: ArrayLike) -> NDArray[np.uint8]:
     if pixels.dtype != np.uint8:
         raise ValueError(f"img: expected uint8, got {pixels.dtype}")
     if not (pixels.ndim == 2 or (pixels.ndim == 3 and pixels.shape[2] in (3, 4))) or pixels.size == 0:
-        raise ValueError(
-            f"img: expected (H, W, 3), (H, W, 4) or (H, W) with pixels, got shape {pixels.shape}"
-        )
+        raise ValueError(f"img: expected (H, W, 3), (H, W, 4) or (H, W) with pixels, got shape {pixels.shape}")
     return pixels

@@ -62,9 +62,7 @@ def read_glb(path: str | os.PathLike[str]) -> GlbDocument:
         images = tuple(_image(views, entry) for entry in document.get("images", []))
     except (struct.error, KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
         reason = f"{type(error).__name__}: {error}"
-        raise ValueError(
-            f"path: expected a GLB (glTF 2.0), but {path} is damaged or none ({reason})"
-        ) from error
+        raise ValueError(f"path: expected a GLB (glTF 2.0), but {path} is damaged or none ({reason})") from error
     return GlbDocument(document, accessors, images)
 
 

@@ -73,9 +73,7 @@ def read_image(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
             pixels = _rgb(ImageOps.exif_transpose(image))
     except _DECODE_ERRORS as error:
         reason = "none of these" if isinstance(error, Image.UnidentifiedImageError) else f"damaged ({error})"
-        raise ValueError(
-            f"path: expected a picture ({', '.join(_FORMATS)}), but {path} is {reason}"
-        ) from error
+        raise ValueError(f"path: expected a picture ({', '.join(_FORMATS)}), but {path} is {reason}") from error
     if pixels.size == 0:
         raise ValueError(f"path: expected a picture, but {path} has zero size {pixels.shape[:2]}")
     return pixels

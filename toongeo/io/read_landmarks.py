@@ -84,9 +84,7 @@ def _read_lines(path: Path, shift: int) -> NDArray[np.float64]:
     for number, line in rows:
         point = _point(line, shift)
         if point is None:
-            raise ValueError(
-                f"path: expected two numbers, got {line.strip()[:60]!r} in line {number} of {path}"
-            )
+            raise ValueError(f"path: expected two numbers, got {line.strip()[:60]!r} in line {number} of {path}")
         points.append(point)
     return np.array(points, dtype=np.float64).reshape(-1, 2)
 
@@ -94,9 +92,7 @@ def _read_lines(path: Path, shift: int) -> NDArray[np.float64]:
 def _between_braces(path: Path, lines: list[tuple[int, str]]) -> list[tuple[int, str]]:
     marks = [k for k, (_, line) in enumerate(lines) if line.strip() in ("{", "}")]
     if len(marks) != 2 or [lines[k][1].strip() for k in marks] != ["{", "}"]:
-        raise ValueError(
-            f"path: expected one '{{' and one '}}' around the points of a .pts file, but not in {path}"
-        )
+        raise ValueError(f"path: expected one '{{' and one '}}' around the points of a .pts file, but not in {path}")
     body = lines[marks[0] + 1 : marks[1]]
     for _, line in lines[: marks[0]]:
         key, _, value = line.partition(":")

@@ -80,9 +80,7 @@ class SceneMesh:
     def _check_uv(self, m: int) -> None:
         if self.uv is None:
             if self.uv_faces is not None or self.texture is not None:
-                raise ValueError(
-                    f"{self._label('uv')}: expected (t, 2) for the uv_faces or texture, got None"
-                )
+                raise ValueError(f"{self._label('uv')}: expected (t, 2) for the uv_faces or texture, got None")
             return
         t = len(self.uv)
         uv_faces = self.faces if self.uv_faces is None else self.uv_faces
@@ -189,9 +187,7 @@ def _finite(label: str, values: object, shape: tuple[int | None, ...]) -> NDArra
     """Float array of this shape (None: any length); float32 stays float32."""
     array = np.asarray(values)
     array = array if array.dtype in (np.float32, np.float64) else array.astype(np.float64)
-    fits = array.ndim == len(shape) and all(
-        s is None or s == a for s, a in zip(shape, array.shape, strict=True)
-    )
+    fits = array.ndim == len(shape) and all(s is None or s == a for s, a in zip(shape, array.shape, strict=True))
     if not fits:
         raise ValueError(f"{label}: expected shape {shape}, got {array.shape}")
     if not np.isfinite(array).all():

@@ -10,9 +10,7 @@ from toongeo.io.atomic_write import atomic_write
 __all__ = ["write_ply"]
 
 
-def write_ply(
-    path: str | os.PathLike[str], V: ArrayLike, F: ArrayLike, colors: ArrayLike | None = None
-) -> None:
+def write_ply(path: str | os.PathLike[str], V: ArrayLike, F: ArrayLike, colors: ArrayLike | None = None) -> None:
     """Write a binary little-endian ``.ply``; atomically.
 
     Parameters

@@ -1,13 +1,13 @@
 """Morphable models: the container, the default template and its tables."""
 
-from toongeo._lazy import attach
+from toongeo.model.data_path import data_path
+from toongeo.model.default_model import default_model
+from toongeo.model.eyeball_template import EyeballTemplate
+from toongeo.model.morphable_model import MorphableModel
 
-__getattr__, __dir__, __all__ = attach(
-    __name__,
-    {
-        "MorphableModel": "morphable_model",
-        "EyeballTemplate": "eyeball_template",
-        "default_model": "default_model",
-        "data_path": "data_path",
-    },
-)
+__all__ = [
+    "EyeballTemplate",
+    "MorphableModel",
+    "data_path",
+    "default_model",
+]

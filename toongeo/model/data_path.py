@@ -8,7 +8,8 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 def data_path(name: str) -> Path:
     """Path of a file that travels with the library, in a wheel and in an editable install alike.
 
-    A wheel carries ``data_templates/`` and ``examples/portraits/`` inside the package; in a source tree they lie beside it.
+    A wheel carries ``data_templates/`` and ``examples/portraits/`` inside the package; in a source tree they lie
+    beside it.
 
     Parameters
     ----------
@@ -29,4 +30,6 @@ def data_path(name: str) -> Path:
     for path in places:
         if path.exists():
             return path
-    raise FileNotFoundError(f"name: {name!r} is not among the installed data files (looked at {places[0]} and {places[1]})")
+    raise FileNotFoundError(
+        f"name: {name!r} is not among the installed data files (looked at {places[0]} and {places[1]})"
+    )

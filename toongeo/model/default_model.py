@@ -17,7 +17,7 @@ def default_model() -> MorphableModel:
     """The default template: an artist-made CC0 head of about 17,000 vertices, 80 identity and 64 expression modes.
 
     Its modes are stored on a control cage and refined by one Catmull-Clark step when it is loaded; since the step is
-    linear, the refined modes of the cage are the modes of the refined mesh. It is loaded once a process and is read-only.
+    linear, the refined modes of the cage are the modes of the refined mesh. Loaded once a process; read-only.
 
     Examples
     --------

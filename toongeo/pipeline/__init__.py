@@ -1,19 +1,28 @@
 """The way of the data, a stage a folder: fit, align, texture, rig."""
 
-from toongeo._lazy import attach
+from toongeo.pipeline.align.align_face import AlignedFace, align_face
+from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.rig.build_rig import Rig, build_rig
+from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
+from toongeo.pipeline.rig.fit_lids import fit_lids
+from toongeo.pipeline.texture.bake_eyes import bake_eyes
+from toongeo.pipeline.texture.bake_texture import bake_texture
+from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 
-__getattr__, __dir__, __all__ = attach(
-    __name__,
-    {
-        "fit_3dmm": "fit.fit_3dmm",
-        "FaceFit": "fit.face_fit",
-        "align_face": "align.align_face",
-        "AlignedFace": "align.align_face",
-        "diffuse_texture": "texture.diffuse_texture",
-        "bake_texture": "texture.bake_texture",
-        "build_rig": "rig.build_rig",
-        "Rig": "rig.build_rig",
-        "fit_eyes": "rig.fit_eyes",
-        "Eyes": "rig.fit_eyes",
-    },
-)
+__all__ = [
+    "AlignedFace",
+    "Eyes",
+    "FaceFit",
+    "FitOptions",
+    "Rig",
+    "align_face",
+    "bake_eyes",
+    "bake_texture",
+    "build_rig",
+    "diffuse_texture",
+    "fit_3dmm",
+    "fit_eyes",
+    "fit_lids",
+]

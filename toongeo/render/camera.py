@@ -180,9 +180,7 @@ class ScaledOrthographicCamera:
         """
         if not (np.isfinite(factor) and factor > 0.0):
             raise ValueError(f"factor: expected a finite number > 0, got {factor!r}")
-        return ScaledOrthographicCamera(
-            self.scale * factor, self.rotation, factor * (self.translation + 0.5) - 0.5
-        )
+        return ScaledOrthographicCamera(self.scale * factor, self.rotation, factor * (self.translation + 0.5) - 0.5)
 
     @property
     def yaw(self) -> float:

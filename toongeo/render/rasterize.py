@@ -51,9 +51,7 @@ class Fragments:
         return self.face_ids >= 0
 
 
-def rasterize(
-    points_px: ArrayLike, F: ArrayLike, height: int, width: int, *, cull_back: bool = False
-) -> Fragments:
+def rasterize(points_px: ArrayLike, F: ArrayLike, height: int, width: int, *, cull_back: bool = False) -> Fragments:
     """Nearest face and barycentric coordinates at every pixel centre.
 
     Coverage and the z-buffer are those of OpenCV's software rasterizer (float32; a pixel centre within

@@ -83,7 +83,7 @@ def test_the_minimum_is_one(face):
     fit = fit_3dmm(None, face, options=options)
     problem = LandmarkFit.of(fit.model, face, options)
     placed = visible_landmarks(problem.basis, np.zeros(144), problem.frame.rotation0)
-    loss = problem.loss(placed)
+    loss = problem.loss(placed, problem.options.prior_weight)
     x = np.zeros(problem.unknowns.size)
     x[problem.unknowns.shape] = coefficients(fit)
     # The pose is optimal for these coefficients: find it again from the camera.
@@ -204,9 +204,10 @@ def test_drawings_give_plausible_faces(model, picture):
     assert max(weights.values()) <= 1
     assert weights["mouthClose"] == 0
     assert max(weights["eyeBlinkLeft"], weights["eyeBlinkRight"]) < 0.5
-    assert np.abs(coefficients(fit)[: len(fit.identity)]).mean() < 1.2
+    assert np.abs(coefficients(fit)[: len(fit.identity)]).mean() < 0.8
     assert abs(fit.camera.yaw) < 25
-    assert fit.report.rms_percent < (12 if picture == "beethoven" else 7)
+    # No face of the model looks like these; the prior keeps it a face and leaves the rest to the alignment.
+    assert fit.report.rms_percent < (16 if picture == "beethoven" else 9)
 
 
 @pytest.mark.parametrize("portrait", ["einstein", "image_0010", "takeo"])

@@ -44,9 +44,7 @@ def test_turning_mirrors_the_jaw(model):
 
 def test_a_straight_outline_counts_across_and_little_along():
     points = np.column_stack([np.zeros(17), np.linspace(0, 160, 17)])
-    np.testing.assert_allclose(
-        jaw_weights(points, 0.35), np.tile(np.diag([1, 0.35**2]), (17, 1, 1)), atol=1e-15
-    )
+    np.testing.assert_allclose(jaw_weights(points, 0.35), np.tile(np.diag([1, 0.35**2]), (17, 1, 1)), atol=1e-15)
 
 
 def test_weights_turn_with_the_picture():

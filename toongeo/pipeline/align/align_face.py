@@ -3,18 +3,17 @@
 import time
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
 from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.model import MorphableModel
+from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 from toongeo.pipeline.align.rim_anchors import rim_anchors
-from toongeo.pipeline.align.similarity import similarity
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.protocols import Camera
 
-# Parts that float inside the mouth: no edge joins them to the skin, so the mouth around them carries them.
-CARRIED = ("teeth_upper", "teeth_lower", "tongue")
 RIM_WEIGHT = 0.01  # of the landmarks' weight: what lies between them is interpolated, not seen
 
 
@@ -67,14 +66,14 @@ def align_face(
     landmarks: np.ndarray,
     *,
     weight: float = 1e4,
-    laplacian: str = "uniform",
+    laplacian: Literal["uniform", "cotangent"] = "uniform",
 ) -> AlignedFace:
     """Deform a fitted face so that its landmark vertices project onto the landmarks (Pan et al. 2024, section 3.2.2).
 
     The anchors of :func:`laplacian_align` are the landmark vertices of the fit. Where a landmark asks for its vertex is
     found in the picture; how far the vertex is from the camera is kept (Eq. 11). The rims of eyes and lips are anchored
-    between the landmarks too, more softly, with interpolated displacements. Teeth and tongue, which no edge joins
-    to the skin, are carried by the similarity that best explains how the mouth around them moved.
+    between the landmarks too, more softly, with interpolated displacements. What lies behind an opening (sockets,
+    mouth cavity, teeth, tongue) is carried along with its rim.
 
     Parameters
     ----------
@@ -109,7 +108,7 @@ def align_face(
     targets_px = np.vstack([targets_px, fit.project(V[rim]) + rim_shift_px])
     targets = fit.camera.unproject(targets_px, fit.camera.depth(V[anchors]))  # Eq. 11
     aligned = laplacian_align(V, fit.faces, anchors, targets, weight=weights, laplacian=laplacian)  # Eq. 10
-    _carry_mouth_parts(fit.model, V, aligned)
+    aligned = carry_inner_parts(fit.model, V, aligned)
     error = np.linalg.norm(fit.camera.project(aligned[fit.landmark_vertices[seen]]) - landmarks[seen], axis=1)
     return AlignedFace(
         vertices=aligned,
@@ -131,12 +130,3 @@ def _merged(anchors: np.ndarray, targets_px: np.ndarray) -> tuple[np.ndarray, np
     mean = np.zeros((len(unique), 2))
     np.add.at(mean, inverse, targets_px)
     return unique, mean / count[:, None]
-
-
-def _carry_mouth_parts(model: MorphableModel, before: np.ndarray, after: np.ndarray) -> None:
-    """Move teeth and tongue in ``after`` as the wall of the mouth cavity moved from ``before``."""
-    wall = model.region("mouth_cavity")
-    scale, rotation, shift = similarity(before[wall], after[wall])
-    for name in CARRIED:
-        part = model.region(name)
-        after[part] = scale * before[part] @ rotation.T + shift

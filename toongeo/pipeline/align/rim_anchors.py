@@ -58,6 +58,11 @@ def rim_anchors(model: MorphableModel, displacement: np.ndarray) -> tuple[np.nda
     return found[free], np.concatenate(moves)[first_at][free]
 
 
+def rim_path(model: MorphableModel, rim: tuple[int, ...]) -> np.ndarray:
+    """Vertices (k,) along one of the rims ``LIDS`` and ``LIPS``, from corner to corner, landmarks included."""
+    return next(path for landmarks, path, _ in _rim_paths(model) if landmarks == rim)
+
+
 @lru_cache(maxsize=4)
 def _rim_paths(model: MorphableModel) -> list[tuple[tuple[int, ...], np.ndarray, np.ndarray]]:
     """For each rim its landmarks, the vertices from corner to corner, and where on that path the landmarks are."""
@@ -69,7 +74,7 @@ def _rim_paths(model: MorphableModel) -> list[tuple[tuple[int, ...], np.ndarray,
     n = len(model.mean)
     lengths = sp.csr_array((np.linalg.norm(model.mean[i] - model.mean[j], axis=1), (i, j)), shape=(n, n))
     lengths.data /= 2  # each edge was summed over its two triangles
-    paths = []
+    paths: list[tuple[tuple[int, ...], np.ndarray, np.ndarray]] = []
     for rim in (*LIDS, *LIPS):
         path = [int(model.landmarks[rim[0]])]
         knots = [0]

@@ -39,9 +39,7 @@ def visible_landmarks(
     return landmarks
 
 
-def _towards(
-    X: NDArray[np.float64], faces: NDArray[np.int64], view: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _towards(X: NDArray[np.float64], faces: NDArray[np.int64], view: NDArray[np.float64]) -> NDArray[np.float64]:
     """Component along ``view`` of the area-weighted vertex normals; only its sign is meant."""
     a = X[faces[:, 0]]
     along = np.cross(X[faces[:, 1]] - a, X[faces[:, 2]] - a) @ view

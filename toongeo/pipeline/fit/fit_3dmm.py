@@ -70,7 +70,7 @@ def fit_3dmm(
 
     References
     ----------
-    Pan et al. 2024, "Fully automatic reconstruction of animatable cartoon faces", Sec. 3.1, Eq. 1, 3, 4,
+    Pan et al. 2024, "Generating animatable 3D cartoon faces from single portraits", section 3.1, Eq. 1, 3, 4,
     6. Bounded L-BFGS: J. Nocedal 1980, in nlopt by S. G. Johnson after L. Lukšan.
 
     Examples

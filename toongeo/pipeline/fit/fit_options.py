@@ -17,7 +17,8 @@ class FitOptions:
     ----------
     landmark_weight, prior_weight : float
         ``w_l`` and ``w_r`` of Eq. 3 (Pan et al. 2024). Landmark errors are measured in outer-eye
-        distances, so ``prior_weight * 68`` is about the variance of a landmark in that unit.
+        distances, so ``prior_weight * 68`` is about the variance of a landmark in that unit. Where a face
+        (a caricature, say) misses its landmarks by more, ``w_r`` grows with the square of the misfit.
     identity_weight, expression_weight : float
         ``w_id`` and ``w_exp`` of Eq. 6.
     jaw_weight : float
@@ -44,7 +45,7 @@ class FitOptions:
     landmark_weight: float = 1.0
     prior_weight: float = 1.5e-5
     identity_weight: float = 1.0
-    expression_weight: float = 6.0
+    expression_weight: float = 15.0
     jaw_weight: float = 0.02
     jaw_tangent: float = 0.35
     max_deviation: float = 3.0

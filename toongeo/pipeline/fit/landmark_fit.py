@@ -99,12 +99,17 @@ class LandmarkFit:
         )
 
     def solve(self, algorithm: str) -> Solution:
-        """Minimise, place the jaw points anew, and again, until they stay or ``max_passes`` are done."""
+        """Minimise, place the jaw points anew, and again, until they stay or ``max_passes`` are done.
+
+        The prior assumes a landmark variance. What the first pass could not explain to that accuracy is a face
+        outside the model, and its misfit is the better estimate of the variance: the prior then counts the more.
+        """
         x = np.zeros(self.unknowns.size)
         placed = self._visible(x)
         passes = evaluations = 0
+        prior_weight = self.options.prior_weight
         while passes < self.options.max_passes:
-            loss = self.loss(placed)
+            loss = self.loss(placed, prior_weight)
             minimum = nlopt_minimize(
                 loss,
                 x,
@@ -117,7 +122,9 @@ class LandmarkFit:
             x = minimum.x
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
             before, placed = placed, self._visible(x)
-            if np.array_equal(before, placed):
+            if passes == 1:
+                prior_weight *= max(1.0, loss.landmark(x)[0] / (prior_weight * len(placed)))
+            if np.array_equal(before, placed) and prior_weight == loss.prior_weight:
                 break
         return Solution(
             coefficients=x[self.unknowns.shape],
@@ -131,8 +138,8 @@ class LandmarkFit:
             evaluations=evaluations,
         )
 
-    def loss(self, landmark_vertices: NDArray[np.int64]) -> TotalLoss:
-        """Eq. 3 with the landmarks (68,) at these vertices."""
+    def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float) -> TotalLoss:
+        """Eq. 3 with the landmarks (68,) at these vertices and this ``w_r``."""
         mean, modes = self.basis.at(landmark_vertices[self.seen])
         landmark = LandmarkLoss(
             unknowns=self.unknowns,
@@ -143,7 +150,7 @@ class LandmarkFit:
             modes=modes,
             rotation0=self.frame.rotation0,
         )
-        return TotalLoss(landmark, self.prior, self.options.landmark_weight, self.options.prior_weight)
+        return TotalLoss(landmark, self.prior, self.options.landmark_weight, prior_weight)
 
     def _visible(self, x: Floats) -> NDArray[np.int64]:
         return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))

@@ -41,7 +41,7 @@ class LandmarkLoss:
 
     References
     ----------
-    Pan et al. 2024, "Fully automatic reconstruction of animatable cartoon faces", Eq. 1, 4.
+    Pan et al. 2024, "Generating animatable 3D cartoon faces from single portraits", Eq. 1, 4.
     """
 
     unknowns: Unknowns

@@ -52,7 +52,8 @@ def build_rig(face: AlignedFace) -> Rig:
     """Expressions of the template's mean face, transferred to this face (Pan et al. 2024, section 3.3).
 
     The face as it was aligned is taken for neutral. The gradients of each template expression are carried over by
-    :class:`toongeo.DeformationTransfer`; vertices that no expression moves on the template (skull, neck, ears) are pinned.
+    :class:`toongeo.DeformationTransfer`; vertices that no expression moves on the template (skull, neck, ears) are
+    pinned.
 
     Parameters
     ----------

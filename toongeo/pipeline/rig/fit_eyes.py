@@ -5,16 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo.model import EyeballTemplate, MorphableModel
+from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.align.similarity import similarity
-from toongeo.pipeline.rig.build_rig import Rig
 from toongeo.pipeline.rig.gaze import gaze_rotation
 
 SIDES = ("left", "right")
 GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame
 CLEARANCE = 0.01  # of the radius: how far lids stay off the eyeball
-PRIOR = 0.15  # of the radius: s.d. of centre and radius about the template's eyeball, carried along with the lids
+# Of the radius: s.d. of centre and radius about the template's eyeball, carried along with the lids.
+PRIOR = np.array([0.15, 0.15, 0.15, 0.03])
 RIM = 0.04  # of the radius: s.d. of the lid rim about the sphere
 HUBER = 2.0  # s.d. beyond which a rim vertex pulls with constant force
 
@@ -48,17 +49,16 @@ class Eyes:
         return self.vertices(side, gaze_rotation(SIDES[side], weights))
 
 
-def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
+def fit_eyes(face: AlignedFace) -> Eyes:
     """A sphere for each socket, moved in until no lid touches it (Pan et al. 2024, section 4.3).
 
     The template's eyeball is carried along by the similarity that best explains how the rim of the lids moved, refined
-    by a robust fit of the sphere to that rim, and then moved back along the resting gaze until every lid vertex stays
-    outside, in the neutral face and in each expression of the rig.
+    by a robust fit of the sphere to that rim, and then moved back along the resting gaze until every lid vertex is
+    outside. That they stay outside in every expression is for :func:`toongeo.fit_lids`.
 
     Parameters
     ----------
     face : AlignedFace
-    rig : Rig
 
     Returns
     -------
@@ -68,31 +68,28 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
     model = face.model
     centres, radii, report = np.empty((2, 3)), np.empty(2), {}
     for side, name in enumerate(SIDES):
-        rim = _rim(model, name)
+        rim = opening_rim(model, f"socket_{name}")
+        coarse = face.fit.vertices[rim]
         centre, radius = model.eyes[side].placed(face.fit.identity)
-        scale, rotation, shift = similarity(face.fit.vertices[rim], face.vertices[rim])
-        centre, radius = _robust_sphere(face.vertices[rim], scale * rotation @ centre + shift, scale * radius)
+        ratios = np.linalg.norm(coarse - centre, axis=1) / radius
+        scale, rotation, shift = similarity(coarse, face.vertices[rim])
+        centre, radius = _robust_sphere(face.vertices[rim], ratios, scale * rotation @ centre + shift, scale * radius)
         lids = np.flatnonzero(model.region(f"eyelid_upper_{name}") | model.region(f"eyelid_lower_{name}"))
         lids = np.union1d(lids, rim)
-        poses = np.concatenate([rig.neutral[lids][None], rig.neutral[lids] + rig.deltas[:, lids]])
-        inset = _inset(poses.reshape(-1, 3) - centre, radius * (1 + CLEARANCE))
+        inset = _inset(face.vertices[lids] - centre, radius * (1 + CLEARANCE))
         centres[side], radii[side] = centre - inset * GAZE, radius
         report[f"inset_{name}_mm"] = inset
     report["seconds"] = time.perf_counter() - started
     return Eyes(centres, radii, model.eyes, report)
 
 
-def _rim(model: MorphableModel, side: str) -> np.ndarray:
-    """Skin vertices that share a triangle with the socket: the inner edge of the lids."""
-    socket = model.region(f"socket_{side}")
-    touching = model.faces[socket[model.faces].any(1)]
-    return np.setdiff1d(touching, np.flatnonzero(socket))
+def _robust_sphere(
+    points: np.ndarray, ratios: np.ndarray, centre: np.ndarray, radius: float
+) -> tuple[np.ndarray, float]:
+    """Sphere from which points (k, 3) lie at ``ratios`` (k,) of its radius, held near a given centre and radius.
 
-
-def _robust_sphere(points: np.ndarray, centre: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
-    """Sphere through points (k, 3) by Gauss-Newton with Huber weights, held near a given centre and radius.
-
-    A lid rim is nearly flat, so that spheres of very different size pass through it; the prior decides among them.
+    Gauss-Newton with Huber weights. The ratios are those of the template, whose lids do not touch its eyeball. A lid
+    rim is nearly flat, so that spheres of very different size suit it; the prior decides among them.
     """
     start = np.r_[centre, radius]
     x = start.copy()
@@ -100,10 +97,10 @@ def _robust_sphere(points: np.ndarray, centre: np.ndarray, radius: float) -> tup
     for _ in range(10):
         offset = points - x[:3]
         distance = np.linalg.norm(offset, axis=1)
-        residual = (distance - x[3]) / (RIM * radius)
+        residual = (distance - ratios * x[3]) / (RIM * radius)
         weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residual), 1e-12))
-        J = np.column_stack([-offset / distance[:, None], -np.ones(len(points))]) / (RIM * radius)
-        H = J.T @ (weight[:, None] * J) + precision * np.eye(4)
+        J = np.column_stack([-offset / distance[:, None], -ratios]) / (RIM * radius)
+        H = J.T @ (weight[:, None] * J) + np.diag(precision)
         x = x - np.linalg.solve(H, J.T @ (weight * residual) + precision * (x - start))
     return x[:3], float(x[3])
 

@@ -12,7 +12,8 @@ from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, EYE_RIGHT, MAX_SIDE, opening_mask
 from toongeo.render import Fragments, rasterize, sample_image, uv_to_px
 
-FADE = 0.12  # of the disc's width: over this distance the colour at the lids fades to white
+OUTLINE = 0.05  # of the eye's width: half the thickness of a drawn line
+FADE = 0.02  # of the disc's width: over this distance the colour at the lids fades to white
 WHITE = np.array([244.0, 242.0, 238.0])  # unseen sclera, sRGB
 
 
@@ -38,7 +39,7 @@ def bake_eyes(img: np.ndarray, face: AlignedFace, eyes: Eyes, texture: np.ndarra
     for side, rims in enumerate((EYE_LEFT, EYE_RIGHT)):
         crop, shift, scale = _eye_crop(img, landmarks[np.unique(np.concatenate(rims))])
         opening = opening_mask((landmarks - shift + 0.5) * scale - 0.5, rims, crop.shape[:2])
-        opening = cv2.erode(opening.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=0).astype(bool)
+        opening = _within_outline(opening)
         disc = _disc_fragments(eyes.templates[side], len(texture))
         rows, columns = np.nonzero(disc.mask)
         box = np.s_[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
@@ -52,6 +53,14 @@ def bake_eyes(img: np.ndarray, face: AlignedFace, eyes: Eyes, texture: np.ndarra
         seen = opening[row, column] & (np.einsum("kc,kc->k", weights, ahead[corners]) > 0)
         atlas[box] = _disc_image(atlas.shape, box, rows, columns, sample_image(crop, at), seen)
     return atlas
+
+
+def _within_outline(opening: np.ndarray) -> np.ndarray:
+    """An opening (h, w) without the drawn line around it, which belongs to the lids."""
+    width = 1 + 2 * round(OUTLINE * np.ptp(np.nonzero(opening)[1])) if opening.any() else 1
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
+    eroded = cv2.erode(opening.astype(np.uint8), disc, borderType=cv2.BORDER_CONSTANT, borderValue=0)
+    return eroded.astype(bool)
 
 
 def _eye_crop(img: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:

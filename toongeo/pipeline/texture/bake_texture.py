@@ -13,7 +13,10 @@ from toongeo.pipeline.texture.face_picture import FacePicture, face_picture
 from toongeo.render import Fragments, interpolate, rasterize, sample_image, uv_to_px
 
 FADE_RINGS = 24  # edges over which unseen skin fades from its nearest seen colour to the mean skin colour
-OBLIQUE, FRONTAL = 0.15, 0.45  # cosines to the viewer between which a texel's trust in the picture grows from 0 to 1
+OBLIQUE, FRONTAL = (
+    0.15,
+    0.45,
+)  # cosines to the viewer between which a texel's trust in the picture grows from 0 to 1
 HIDDEN_MM = 3.0  # how far behind the visible surface a texel may lie and still be taken as seen
 
 
@@ -103,7 +106,10 @@ def _vertex_colours(face: AlignedFace, picture: FacePicture, source: np.ndarray)
     if not seen.any():
         return colours
     colours[seen] = sample_image(smooth, picture.points[seen])
-    skin = np.median(colours[seen & ~model.region("lips")] if (seen & ~model.region("lips")).any() else colours[seen], axis=0)
+    skin = np.median(
+        colours[seen & ~model.region("lips")] if (seen & ~model.region("lips")).any() else colours[seen],
+        axis=0,
+    )
     joined = outside[model.faces].all(1)
     filled, rings = diffuse_over_mesh(model.faces[joined], colours, seen)
     fade = np.clip(rings / FADE_RINGS, 0, 1)[:, None]

@@ -27,9 +27,10 @@ def diffuse_over_mesh(F: np.ndarray, colours: np.ndarray, known: np.ndarray) -> 
     Examples
     --------
     >>> F = np.array([[0, 1, 2], [2, 1, 3]])
-    >>> filled, rings = diffuse_over_mesh(F, np.array([[4.0], [2.0], [0.0], [0.0]]), np.array([True, True, False, False]))
+    >>> colours, known = np.array([[4.0], [2.0], [0.0], [0.0]]), np.array([True, True, False, False])
+    >>> filled, rings = diffuse_over_mesh(F, colours, known)
     >>> filled.ravel(), rings
-    (array([4. , 2. , 3. , 2.5]), array([0, 0, 1, 2]))
+    (array([4., 2., 3., 2.]), array([0, 0, 1, 1]))
     """
     n = len(colours)
     i, j = F[:, [0, 1, 2]].ravel(), F[:, [1, 2, 0]].ravel()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Literal
+from typing import Any, Literal
 
 import cv2
 import numpy as np
@@ -11,9 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["diffuse_texture"]
 
+_Pairs = tuple[tuple[tuple[int, int], tuple[int, int]], ...]
+
 # Pairs of opposite neighbours (row, column). Opposite ones are added first, so that a mirrored or transposed
 # picture gives the mirrored or transposed result to the last bit.
-_PAIRS = {
+_PAIRS: dict[int, _Pairs] = {
     4: (((0, -1), (0, 1)), ((-1, 0), (1, 0))),
     8: (((0, -1), (0, 1)), ((-1, 0), (1, 0)), ((-1, -1), (1, 1)), ((-1, 1), (1, -1))),
 }
@@ -27,7 +29,7 @@ def diffuse_texture(
     *,
     order: Literal["layers", "sequential"] = "layers",
     connectivity: Literal[4, 8] = 4,
-) -> NDArray[np.generic]:
+) -> NDArray[Any]:
     """Replace unknown pixels by the colour of the known ones, breadth first (Pan et al. 2024, 3.2.3).
 
     Each unknown pixel takes the mean of its neighbours visited before it. Pixels are visited in the order of
@@ -57,7 +59,7 @@ def diffuse_texture(
     ------
     ValueError
         If shapes or types do not fit, no pixel is known, a known value is not finite, or an option is
-        unknown.
+            unknown.
 
     Examples
     --------
@@ -82,12 +84,11 @@ def diffuse_texture(
     return np.where(known, img, filled)
 
 
-def _checked(img: ArrayLike, mask: ArrayLike) -> tuple[NDArray[np.generic], NDArray[np.bool_]]:
+def _checked(img: ArrayLike, mask: ArrayLike) -> tuple[NDArray[Any], NDArray[np.bool_]]:
     img, mask = np.asarray(img), np.asarray(mask)
     if img.ndim not in (2, 3) or img.size == 0 or img.dtype not in _DTYPES:
         raise ValueError(
-            "img: expected uint8, uint16, float32 or float64 of shape (H, W) or (H, W, C), "
-            f"got {img.dtype} {img.shape}"
+            f"img: expected uint8, uint16, float32 or float64 of shape (H, W) or (H, W, C), got {img.dtype} {img.shape}"
         )
     if mask.shape != img.shape[:2] or mask.dtype != bool:
         raise ValueError(f"mask: expected bool of shape {img.shape[:2]}, got {mask.dtype} {mask.shape}")
@@ -98,7 +99,7 @@ def _checked(img: ArrayLike, mask: ArrayLike) -> tuple[NDArray[np.generic], NDAr
     return img, mask
 
 
-def _framed(img, mask, dtype):
+def _framed(img: NDArray[Any], mask: NDArray[np.bool_], dtype: type[np.floating[Any]]) -> NDArray[Any]:
     """(H + 2, W + 2, C + 1): the colours, 0 where unknown, then 1 where known; a frame of unknown around."""
     h, w = mask.shape
     colours = img.reshape(h, w, -1)
@@ -108,11 +109,11 @@ def _framed(img, mask, dtype):
     return framed
 
 
-def _offsets(pairs, width):
+def _offsets(pairs: _Pairs, width: int) -> list[tuple[int, int]]:
     return [(a * width + b, c * width + d) for (a, b), (c, d) in pairs]
 
 
-def _layers(framed, mask, pairs):
+def _layers(framed: NDArray[Any], mask: NDArray[np.bool_], pairs: _Pairs) -> None:
     """Fill `framed` in place, all pixels of one breadth-first layer at once."""
     # The layer of a pixel is its city-block (4) or chessboard (8) distance; the frame is unknown as well, and
     # no way around through it is shorter.
@@ -136,7 +137,7 @@ def _layers(framed, mask, pairs):
         flat[here] = mean
 
 
-def _sequential(framed, mask, pairs):
+def _sequential(framed: NDArray[Any], mask: NDArray[np.bool_], pairs: _Pairs) -> None:
     """Fill `framed` in place by one queue, seeded with the first ring in raster order."""
     # Plain lists: indexing single elements of an array costs several times more.
     steps = sorted(step for pair in _offsets(pairs, framed.shape[1]) for step in pair)

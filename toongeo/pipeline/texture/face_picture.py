@@ -10,7 +10,10 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.render import Fragments, rasterize
 
 MAX_SIDE = 1024  # px; a larger crop is reduced, which also filters it before it is sampled
-SPREAD = (7.0, 13.0)  # CIELAB units: least and largest distance from the skin's colour that still counts as skin
+SPREAD = (
+    7.0,
+    13.0,
+)  # CIELAB units: least and largest distance from the skin's colour that still counts as skin
 FRONTAL = 0.2  # cosine to the viewing direction below which a surface is too oblique to be trusted
 # Upper and lower rim of each opening, as iBUG-68 points from corner to corner.
 OPENINGS = (
@@ -97,9 +100,7 @@ def face_picture(img: np.ndarray, face: AlignedFace) -> FacePicture:
         openings |= opening_mask(landmarks, rims, crop.shape[:2])
     front = _front_pixels(face, fragments, cosines) & ~openings
     skin, sure = _skin_pixels(crop, landmarks, front)
-    return FacePicture(
-        np.ascontiguousarray(crop), points, cosines, fragments, skin, sure, openings, scale, start
-    )
+    return FacePicture(np.ascontiguousarray(crop), points, cosines, fragments, skin, sure, openings, scale, start)
 
 
 def opening_mask(
@@ -143,7 +144,7 @@ def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> 
     """
     width = max(3, int(0.03 * np.ptp(landmarks[:, 0])))
     corners = np.round(landmarks).astype(np.int32)
-    brows = np.zeros(front.shape, np.uint8)  # strokes a little thicker than a brow
+    brows: np.ndarray = np.zeros(front.shape, np.uint8)  # strokes a little thicker than a brow
     cv2.polylines(brows, [corners[brow] for brow in BROWS], False, 1, 2 * width)
     hull = brows.copy()
     cv2.fillConvexPoly(hull, cv2.convexHull(corners), 1)

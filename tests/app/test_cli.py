@@ -1,0 +1,75 @@
+import subprocess
+import sys
+
+import pytest
+
+from tests.conftest import PORTRAITS
+from toongeo.app.cli import main
+
+PICTURE, POINTS = PORTRAITS / "blue_girl.png", PORTRAITS / "blue_girl.pts"
+
+
+def test_make_writes_what_it_says(tmp_path, capsys):
+    out = tmp_path / "girl.glb"
+    assert main(["make", str(PICTURE), "--landmarks", str(POINTS), "-o", str(out)]) == 0
+    assert out.read_bytes()[:4] == b"glTF"
+    printed = capsys.readouterr().out
+    assert str(out) in printed and "self-intersect" in printed and "inner51" in printed
+
+
+def test_demo_writes_its_four_kinds_of_file(tmp_path, capsys):
+    assert main(["demo", "-o", str(tmp_path / "demo")]) == 0
+    names = {path.name for path in (tmp_path / "demo").iterdir()}
+    assert names == {"avatar.glb", "avatar.obj", "avatar.mtl", "avatar.png", "contact-sheet.png"}
+    printed = capsys.readouterr().out
+    assert all(name in printed for name in names)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([str(PICTURE.with_name("none.png")), "--landmarks", str(POINTS), "-o", "a.glb"], "none.png"),
+        ([str(PICTURE), "--landmarks", str(PICTURE), "-o", "a.glb"], "expected .pts"),
+        (
+            [str(PICTURE), "--landmarks", str(POINTS), "-o", "a.fbx"],
+            "output: expected a name that ends in .glb",
+        ),
+        ([str(PICTURE), "--landmarks", str(POINTS), "-o", "no/such/folder/a.glb"], "no/such/folder"),
+        ([str(PORTRAITS / "blue_girl.pts"), "--landmarks", str(POINTS), "-o", "a.glb"], "blue_girl.pts"),
+        (
+            [
+                str(PICTURE),
+                "--landmarks",
+                str(PORTRAITS / "astronaut.pts"),
+                "-o",
+                "a.glb",
+                "--texture-size",
+                "0",
+            ],
+            "size",
+        ),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(arguments, message, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["make", *arguments]) == 2
+    error = [line for line in capsys.readouterr().err.splitlines() if line.startswith("toongeo: ")]
+    assert len(error) == 1 and message in error[0]
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_command_is_exit_code_2():
+    with pytest.raises(SystemExit) as stop:
+        main([])
+    assert stop.value.code == 2
+
+
+def test_the_module_runs_as_a_program():
+    done = subprocess.run(
+        [sys.executable, "-m", "toongeo", "--version"],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=PORTRAITS.parents[1],
+    )
+    assert done.stdout.startswith("toongeo ")

@@ -1,0 +1,81 @@
+"""Fixtures for all tests; BLAS is pinned to one thread before numpy is imported."""
+
+import os
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[variable] = "1"
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[1]
+WEB = ROOT / "tests" / "web"
+PORTRAITS = ROOT / "examples" / "portraits"
+CARTOONS = sorted(path.stem for path in PORTRAITS.glob("*.png"))
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(0)
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """Data that may not travel with the project; tests that need it are skipped where it is absent."""
+    folder = ROOT.parent / "shared"
+    if not folder.is_dir():
+        pytest.skip("needs the folder `shared` beside the checkout")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def model():
+    from toongeo.model import default_model
+
+    return default_model()
+
+
+@pytest.fixture(scope="session")
+def cartoon():
+    """``cartoon(name)`` -> picture and landmarks of a bundled example."""
+    from toongeo.io import read_image, read_landmarks
+
+    return lambda name: (read_image(PORTRAITS / f"{name}.png"), read_landmarks(PORTRAITS / f"{name}.pts"))
+
+
+@pytest.fixture(scope="session")
+def avatar(cartoon):
+    """The avatar of one bundled picture, built once."""
+    from toongeo import make_avatar
+
+    return make_avatar(*cartoon("moustache_man"))
+
+
+@pytest.fixture(scope="session")
+def node():
+    """Runs a script of tests/web on files and gives what it prints.
+
+    Skips without node or its packages (``npm ci --prefix tests/web``); fails if TOONGEO_REQUIRE_WEB=1.
+    """
+    missing = None
+    if shutil.which("node") is None:
+        missing = "node is not installed"
+    elif not (WEB / "node_modules" / "gltf-validator").is_dir():
+        missing = "run `npm ci --prefix tests/web` first"
+    if missing and os.environ.get("TOONGEO_REQUIRE_WEB") == "1":
+        pytest.fail(missing)
+    if missing:
+        pytest.skip(missing)
+
+    def run(script, *files):
+        command = ["node", str(WEB / script), *map(str, files)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    return run

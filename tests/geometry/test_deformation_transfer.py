@@ -1,0 +1,176 @@
+"""Deformation transfer: Sumner and Popovic's own system, exact cases, equivariance, translation, pins."""
+
+import numpy as np
+import pytest
+
+from toongeo.geometry.deformation_transfer import DeformationTransfer, deformation_transfer
+
+
+@pytest.fixture
+def deformed(bumpy):
+    """A smooth large bend, twist and bulge of the bumpy sphere."""
+    x, y, z = bumpy[0].T
+    angle = 0.8 * z
+    bent = np.stack([x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle), z], axis=1)
+    return bent * (1 + 0.2 * y)[:, None] + [0.1, 0.2, 0.3]
+
+
+@pytest.fixture
+def target(sphere):
+    V = sphere[0]
+    return V * [1.5, 1.0, 0.8] * (1 + 0.1 * V[:, :1] * V[:, 2:])
+
+
+def with_fourth(V, F):
+    """Frames (m, 3, 3) whose columns are v2 - v1, v3 - v1, v4 - v1 of Eq. 14."""
+    e1, e2 = V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]
+    normal = np.cross(e1, e2)
+    normal /= np.sqrt(np.linalg.norm(normal, axis=1, keepdims=True))
+    return np.stack([e1, e2, normal], axis=2)
+
+
+def literal_system(source, deformed, F, target, fixed, positions):
+    """Eq. 14-16 as printed: all fourth vertices are unknowns; dense least squares; some vertices given."""
+    n, m = len(source), len(F)
+    Q = with_fourth(deformed, F) @ np.linalg.inv(with_fourth(source, F))
+    W = np.linalg.inv(with_fourth(target, F))
+    A = np.zeros((m, 3, n + m))
+    for j in range(m):
+        A[j][:, [*F[j, 1:], n + j]] += W[j].T
+        A[j][:, F[j, 0]] -= W[j].sum(axis=0)
+    A, b = A.reshape(3 * m, n + m), Q.transpose(0, 2, 1).reshape(3 * m, 3)
+    free = np.setdiff1d(np.arange(n + m), fixed)
+    x = np.empty((n + m, 3))
+    x[fixed] = positions
+    x[free] = np.linalg.lstsq(A[:, free], b - A[:, fixed] @ positions, rcond=None)[0]
+    return x[:n]
+
+
+@pytest.mark.parametrize("pinned", [None, [0], [5, 100, 301]])
+def test_is_the_literal_system_of_sumner_and_popovic(bumpy, deformed, target, pinned):
+    source, F = bumpy
+    fixed = [0] if pinned is None else pinned
+    at = target[fixed] + (deformed[fixed] - source[fixed] if pinned is None else 0)
+    expected = literal_system(source, deformed, F, target, fixed, at)
+    result = deformation_transfer(source, deformed, F, target, pinned=pinned)
+    np.testing.assert_allclose(result, expected, atol=1e-10)
+
+
+def test_no_deformation_gives_the_target_exactly(bumpy, target):
+    source, F = bumpy
+    np.testing.assert_array_equal(deformation_transfer(source, source, F, target), target)
+    np.testing.assert_array_equal(deformation_transfer(source, source, F, target, pinned=[3]), target)
+
+
+def test_the_source_as_target_gives_the_deformed_source(bumpy, deformed):
+    source, F = bumpy
+    np.testing.assert_allclose(deformation_transfer(source, deformed, F, source), deformed, atol=1e-12)
+
+
+def test_a_scaled_and_shifted_source_as_target(bumpy, deformed):
+    source, F = bumpy
+    result = deformation_transfer(source, deformed, F, 2.5 * source + [1, 2, 3])
+    expected = 2.5 * deformed
+    np.testing.assert_allclose(result - result[0], expected - expected[0], atol=1e-11)
+
+
+def test_a_similarity_of_the_source_is_the_same_similarity_of_any_target(bumpy, target, rotation):
+    source, F = bumpy
+    result = deformation_transfer(source, 1.7 * source @ rotation.T + [4, 5, 6], F, target)
+    expected = 1.7 * target @ rotation.T
+    np.testing.assert_allclose(result - result[0], expected - expected[0], atol=1e-12)
+
+
+def test_a_translation_moves_the_target_as_far(bumpy, target):
+    source, F = bumpy
+    t = np.array([1.0, -2, 0.5])
+    np.testing.assert_allclose(deformation_transfer(source, source + t, F, target), target + t, atol=1e-12)
+
+
+@pytest.mark.parametrize("pinned", [None, [7, 8]])
+@pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])
+def test_follows_a_rigid_motion_and_scale_of_all_three(bumpy, deformed, target, rotation, pinned, scale):
+    source, F = bumpy
+    move = lambda X: scale * (X @ rotation.T + [3.0, -1, 2])  # noqa: E731
+    expected = move(deformation_transfer(source, deformed, F, target, pinned=pinned))
+    result = deformation_transfer(move(source), move(deformed), F, move(target), pinned=pinned)
+    np.testing.assert_allclose(result, expected, rtol=0, atol=1e-9 * scale)
+
+
+def test_pins_stay_exactly_and_hold_their_component(bumpy, deformed, target):
+    source, F = bumpy
+    result = deformation_transfer(source, deformed + 9, F, target, pinned=[5, 100, 5])
+    np.testing.assert_array_equal(result[[5, 100]], target[[5, 100]])
+    np.testing.assert_allclose(result, deformation_transfer(source, deformed, F, target, pinned=[5, 100]), atol=1e-11)
+    everything = deformation_transfer(source, deformed, F, target, pinned=np.arange(len(source)))
+    np.testing.assert_array_equal(everything, target)
+
+
+def test_each_component_is_placed_by_itself(two_parts, deformed):
+    source, F = two_parts
+    half = (len(source) - 1) // 2
+    up, forward = np.array([0, 1, 0]), np.array([0, 0, 7])
+    moved = np.concatenate([deformed, source[half:-1] + up, source[-1:] + forward])
+    target = source * 1.5
+    result = deformation_transfer(source, moved, F, target, pinned=[2])
+    np.testing.assert_array_equal(result[2], target[2])
+    np.testing.assert_allclose(result[half:-1], target[half:-1] + up, atol=1e-12)
+    np.testing.assert_array_equal(result[-1], target[-1] + forward)
+
+
+def test_a_stack_is_its_shapes_one_by_one(bumpy, deformed, target):
+    source, F = bumpy
+    transfer = DeformationTransfer(source, F, target)
+    stack = np.stack([deformed, source, 2 * deformed]).astype(np.float32)
+    result = transfer.transfer(stack)
+    assert result.shape == stack.shape and result.dtype == np.float64
+    for one, shape in zip(result, stack, strict=True):
+        np.testing.assert_array_equal(one, transfer(shape))
+    assert transfer.transfer(stack[:0]).shape == (0, *source.shape)
+
+
+def test_a_collapsed_triangle_in_the_deformed_source_is_allowed(bumpy, deformed, target):
+    source, F = bumpy
+    deformed = deformed.copy()
+    deformed[F[10]] = deformed[F[10, 0]]
+    assert np.isfinite(deformation_transfer(source, deformed, F, target)).all()
+
+
+def test_arguments_are_not_written_to(bumpy, deformed, target):
+    source, F = bumpy
+    arguments = (source, deformed, F, target)
+    copies = [a.copy() for a in arguments]
+    deformation_transfer(*arguments, pinned=np.array([1]))
+    for before, after in zip(copies, arguments, strict=True):
+        np.testing.assert_array_equal(before, after)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"V_source": np.zeros((386, 2))}, r"V_source: expected real numbers of shape \(n, 3\)"),
+        ({"V_source": np.zeros((386, 3))}, "V_source: expected triangles with an area, got 768 degenerate"),
+        ({"V_target": np.zeros((386, 3))}, "V_target: expected triangles with an area"),
+        ({"V_target": np.full((386, 3), np.nan)}, "V_target: expected finite coordinates"),
+        (
+            {"V_target": np.random.default_rng(0).normal(size=(400, 3))},
+            "V_target: expected 386 vertices .* got 400",
+        ),
+        ({"F": [[0, 1, 386]]}, r"F: expected indices in 0\.\.385, got 386"),
+        (
+            {"V_deformed": np.zeros((385, 3))},
+            r"V_deformed: expected .* \(386, 3\) or \(k, 386, 3\), got float64 \(385, 3\)",
+        ),
+        ({"V_deformed": np.zeros((1, 1, 386, 3))}, "V_deformed: expected real numbers of shape"),
+        ({"V_deformed": np.full((386, 3), np.inf)}, "V_deformed: expected finite coordinates, got 1158"),
+        ({"pinned": [386]}, r"pinned: expected vertex indices in 0\.\.385, got 386"),
+        ({"pinned": [-1]}, "pinned: expected vertex indices .* got -1"),
+        ({"pinned": [[1]]}, r"pinned: expected integers of shape \(p,\)"),
+        ({"pinned": [0.5]}, "pinned: expected integers"),
+    ],
+)
+def test_bad_input_is_named(bumpy, deformed, target, change, message):
+    source, F = bumpy
+    arguments = {"V_source": source, "V_deformed": deformed, "F": F, "V_target": target} | change
+    with pytest.raises(ValueError, match=message):
+        deformation_transfer(**arguments)

@@ -1,0 +1,38 @@
+import numpy as np
+import pytest
+
+from toongeo.pipeline.align.rim_anchors import LIDS, LIPS, rim_anchors, rim_path
+
+
+@pytest.mark.parametrize("rim", [*LIDS, *LIPS])
+def test_a_rim_is_a_path_of_edges_through_its_landmarks(model, rim):
+    path = rim_path(model, rim)
+    edges = {frozenset(edge) for face in model.faces for edge in zip(face, np.roll(face, 1), strict=True)}
+    assert all(frozenset(edge) in edges for edge in zip(path[:-1], path[1:], strict=True))
+    places = [list(path).index(vertex) for vertex in model.landmarks[list(rim)]]
+    assert places == sorted(places) and places[0] == 0 and places[-1] == len(path) - 1
+    assert len(set(path)) == len(path)
+
+
+def test_a_shift_of_all_landmarks_shifts_the_rims(model):
+    vertices, shift = rim_anchors(model, np.tile([3.0, -2.0], (68, 1)))
+    np.testing.assert_allclose(shift, np.tile([3.0, -2.0], (len(vertices), 1)), atol=1e-12)
+    assert len(np.unique(vertices)) == len(vertices) > 60
+    assert not np.isin(vertices, model.landmarks).any()
+
+
+def test_lips_take_displacements_between_those_of_their_landmarks(model, rng):
+    displacement = rng.normal(size=(68, 1))
+    vertices, moved = rim_anchors(model, displacement)
+    upper = np.isin(vertices, rim_path(model, LIPS[2]))
+    bounds = displacement[list(LIPS[2])]
+    assert (moved[upper] >= bounds.min() - 1e-12).all() and (moved[upper] <= bounds.max() + 1e-12).all()
+
+
+def test_missing_landmarks_leave_their_neighbourhood_free(model):
+    displacement = np.zeros((68, 2))
+    everything, _ = rim_anchors(model, displacement)
+    displacement[36] = np.nan
+    fewer, moved = rim_anchors(model, displacement)
+    assert 0 < len(fewer) < len(everything) and np.isfinite(moved).all()
+    assert len(rim_anchors(model, np.full((68, 2), np.nan))[0]) == 0

@@ -1,0 +1,156 @@
+import numpy as np
+import pytest
+
+from tests.conftest import CARTOONS
+from toongeo.io import read_glb, read_obj
+from toongeo.make_avatar import STAGES, make_avatar
+
+
+@pytest.fixture(scope="module")
+def glb(avatar, tmp_path_factory):
+    path = tmp_path_factory.mktemp("glb") / "avatar.glb"
+    avatar.save(path)
+    return path
+
+
+def test_neutral_vertices_are_the_aligned_face(avatar):
+    np.testing.assert_array_equal(avatar.vertices(), avatar.face.vertices)
+
+
+def test_names_and_vectors_say_the_same(avatar):
+    weights = np.zeros(46)
+    weights[avatar.names.index("jawOpen")] = 0.6
+    np.testing.assert_array_equal(avatar.vertices({"jawOpen": 0.6}), avatar.vertices(weights))
+
+
+def test_gaze_moves_the_eyeballs_and_not_the_head(avatar):
+    look = {"eyeLookUpLeft": 1.0}
+    np.testing.assert_array_equal(avatar.vertices(look), avatar.vertices())
+    assert np.abs(avatar.eye_vertices(0, look) - avatar.eye_vertices(0)).max() > 1
+    np.testing.assert_array_equal(avatar.eye_vertices(1, look), avatar.eye_vertices(1))
+
+
+def test_bad_weights_are_refused(avatar):
+    with pytest.raises(ValueError, match="weights: no expression 'jawOpne'; did you mean"):
+        avatar.vertices({"jawOpne": 1.0})
+    with pytest.raises(ValueError, match="weights: expected 46 values"):
+        avatar.vertices(np.zeros(52))
+
+
+def test_the_picture_comes_back_when_rendered_from_its_own_camera(avatar, cartoon):
+    """Seen through the fitted camera, the textured face shows the picture it was taken from."""
+    import cv2
+
+    from toongeo.render import render_mesh
+
+    img, landmarks = cartoon("moustache_man")
+    rendered = render_mesh(avatar.surfaces(), avatar.face.camera, img.shape[:2], shading="unlit")
+    hull = np.zeros(img.shape[:2], np.uint8)
+    cv2.fillConvexPoly(hull, cv2.convexHull(np.round(landmarks).astype(np.int32)), 1)
+    inner = cv2.erode(hull, np.ones((9, 9), np.uint8)).astype(bool)
+    difference = np.abs(rendered.astype(float) - img)[inner].mean()
+    assert difference < 8
+
+
+def test_a_second_run_is_bit_identical(avatar, glb, cartoon, tmp_path):
+    again = make_avatar(*cartoon("moustache_man"))
+    np.testing.assert_array_equal(again.texture, avatar.texture)
+    np.testing.assert_array_equal(again.rig.deltas, avatar.rig.deltas)
+    again.save(tmp_path / "again.glb")
+    assert (tmp_path / "again.glb").read_bytes() == glb.read_bytes()
+
+
+def test_the_glb_holds_46_named_targets_and_eyes_that_follow_gaze(glb):
+    document = read_glb(glb).json
+    names = {mesh["name"]: mesh["extras"]["targetNames"] for mesh in document["meshes"]}
+    assert len(names["head"]) == 46 and "eyeBlinkLeft" in names["head"]
+    assert names["eye_left"] == ["eyeLookInLeft", "eyeLookOutLeft", "eyeLookUpLeft", "eyeLookDownLeft"]
+    assert len(document["images"]) == 1
+    assert {channel["target"]["path"] for channel in document["animations"][0]["channels"]} == {"weights"}
+
+
+@pytest.mark.parametrize("name", CARTOONS)
+def test_every_example_gives_a_valid_glb(name, cartoon, node, tmp_path):
+    result = make_avatar(*cartoon(name))
+    assert 100 * result.report.aligned["inner51"] <= 0.1
+    result.save(tmp_path / "a.glb")
+    (verdict,) = node("validate.mjs", tmp_path / "a.glb")
+    assert (verdict["errors"], verdict["warnings"]) == (0, 0), verdict
+
+
+@pytest.mark.parametrize("name", ["einstein", "image_0010", "takeo"])
+def test_every_portrait_gives_a_valid_glb(name, shared, node, tmp_path):
+    from toongeo.io import read_image, read_landmarks
+
+    folder = shared / "data" / "portraits"
+    picture = next(p for p in folder.glob(f"{name}.*") if p.suffix != ".pts")
+    result = make_avatar(read_image(picture), read_landmarks(folder / f"{name}.pts"))
+    assert 100 * result.report.coarse["inner51"] <= 4
+    assert 100 * result.report.aligned["inner51"] <= 0.1
+    result.save(tmp_path / "a.glb")
+    (verdict,) = node("validate.mjs", tmp_path / "a.glb")
+    assert (verdict["errors"], verdict["warnings"]) == (0, 0), verdict
+
+
+def test_obj_keeps_vertices_and_names_its_texture(avatar, tmp_path):
+    avatar.save(tmp_path / "face.obj")
+    data = read_obj(tmp_path / "face.obj")
+    n = len(avatar.vertices())
+    np.testing.assert_array_equal(data.vertices[:n], avatar.vertices())
+    assert (tmp_path / "face.png").exists() and "map_Kd face.png" in (tmp_path / "face.mtl").read_text()
+
+
+def test_ply_has_the_colours_of_the_texture(avatar, tmp_path):
+    import trimesh
+
+    avatar.save(tmp_path / "face.ply")
+    mesh = trimesh.load(tmp_path / "face.ply", process=False)
+    n = len(avatar.vertices())
+    np.testing.assert_allclose(mesh.vertices[:n], avatar.vertices(), atol=1e-4)
+    assert mesh.visual.vertex_colors[:n, :3].std() > 5
+
+
+def test_a_suffix_that_cannot_be_written_is_refused(avatar, tmp_path):
+    with pytest.raises(ValueError, match=r"path: expected a name that ends in \.glb, \.obj, \.ply, got .*face\.fbx"):
+        avatar.save(tmp_path / "face.fbx")
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_unwritable_path_leaves_nothing(avatar, tmp_path):
+    with pytest.raises(OSError, match="nowhere"):
+        avatar.save(tmp_path / "nowhere" / "face.glb")
+    assert not list(tmp_path.iterdir())
+
+
+def test_render_is_a_picture_of_the_size_asked_for(avatar):
+    clay, textured = avatar.render(size=96, textured=False), avatar.render(size=96)
+    assert clay.shape == textured.shape == (96, 96, 3) and clay.dtype == np.uint8
+    assert np.abs(clay.astype(int) - textured).max() > 20
+    assert np.abs(avatar.render({"jawOpen": 1.0}, size=96).astype(int) - textured).max() > 20
+    assert np.abs(avatar.render({"eyeLookOutLeft": 1.0}, size=96).astype(int) - textured).max() > 20
+
+
+def test_stages_are_announced_and_timed(avatar, cartoon):
+    heard = []
+    result = make_avatar(*cartoon("blue_girl"), progress=heard.append)
+    assert tuple(heard) == STAGES == tuple(result.report.seconds)
+
+
+def test_a_picture_that_is_none_is_refused(cartoon):
+    img, landmarks = cartoon("blue_girl")
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8, got float64"):
+        make_avatar(img / 255.0, landmarks)
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8"):
+        make_avatar(img[:0], landmarks)
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8"):
+        make_avatar(img[..., 0], landmarks)
+
+
+def test_missing_landmarks_are_worked_around(cartoon):
+    img, landmarks = cartoon("moustache_man")
+    landmarks = landmarks.copy()
+    landmarks[:8] = np.nan
+    landmarks[40] = np.nan
+    result = make_avatar(img, landmarks)
+    assert np.isfinite(result.vertices()).all()
+    assert 100 * result.report.aligned["inner51"] <= 0.1

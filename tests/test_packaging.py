@@ -1,0 +1,85 @@
+"""The library as users have it: imported, in a wheel, installed in place."""
+
+import subprocess
+import sys
+import zipfile
+
+import pytest
+
+import toongeo
+from tests.conftest import ROOT
+
+PROBE = "from toongeo.model import data_path; print(data_path('data_templates/head.npz')); print(data_path('{}'))"
+PORTRAIT = "examples/portraits/moustache_man.png"
+
+
+def run(*command, **options):
+    done = subprocess.run(
+        [str(c) for c in command], capture_output=True, text=True, check=False, timeout=300, **options
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_importing_the_library_imports_no_heavy_package():
+    heavy = ["numpy", "scipy", "cv2", "igl", "skimage", "nlopt", "trimesh"]
+    code = f"import sys, toongeo; print([name for name in {heavy} if name in sys.modules])"
+    assert run(sys.executable, "-c", code, cwd=ROOT).strip() == "[]"
+
+
+def test_every_public_name_exists_and_is_documented():
+    for name in toongeo.__all__:
+        verb = getattr(toongeo, name)
+        assert callable(verb) and len(verb.__doc__) > 60, name
+
+
+def test_a_verb_wins_over_the_module_of_its_name():
+    code = "import toongeo.make_avatar, toongeo.avatar, toongeo as t; print(callable(t.make_avatar), t.Avatar.__name__)"
+    assert run(sys.executable, "-c", code, cwd=ROOT).split() == ["True", "Avatar"]
+
+
+@pytest.fixture(scope="module")
+def pip():
+    pytest.importorskip("pip", reason="needs pip to build the wheel")
+    return [sys.executable, "-m", "pip", "--disable-pip-version-check", "-q"]
+
+
+def test_a_wheel_carries_its_data(pip, tmp_path):
+    run(*pip, "wheel", "--no-deps", "-w", tmp_path, ROOT)
+    (wheel,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "site")
+        names = archive.namelist()
+    assert "toongeo/io/landmark_layout.csv" in names
+    assert not [name for name in names if "/build/" in name or name.startswith("tests")]
+    found = run(
+        sys.executable,
+        "-P",
+        "-c",
+        PROBE.format(PORTRAIT),
+        cwd=tmp_path,
+        env={"PYTHONPATH": str(tmp_path / "site")},
+    )
+    assert all(line.startswith(str(tmp_path / "site")) for line in found.split())
+
+
+def test_an_editable_install_finds_its_data(pip, tmp_path):
+    run(*pip, "install", "--no-deps", "--target", tmp_path / "site", "-e", ROOT)
+    code = f"import site; site.addsitedir({str(tmp_path / 'site')!r}); " + PROBE.format(PORTRAIT)
+    found = run(sys.executable, "-P", "-c", code, cwd=tmp_path)
+    assert all(line.startswith(str(ROOT)) for line in found.split())
+
+
+def test_a_file_that_does_not_travel_is_named():
+    from toongeo.model import data_path
+
+    with pytest.raises(
+        FileNotFoundError, match="name: 'data_templates/none.npz' is not among the installed data files"
+    ):
+        data_path("data_templates/none.npz")
+
+
+def test_the_stub_names_what_the_package_has():
+    stub = (ROOT / "toongeo" / "__init__.pyi").read_text()
+    named = {line.split(" as ")[1] for line in stub.splitlines() if " as " in line}
+    assert named == set(toongeo.__all__)

@@ -1,0 +1,31 @@
+"""The public names, for type checkers; ``__init__.py`` imports each when it is first used."""
+
+from toongeo.avatar import Avatar as Avatar
+from toongeo.geometry import DeformationTransfer as DeformationTransfer
+from toongeo.geometry import LaplacianAligner as LaplacianAligner
+from toongeo.geometry import deformation_transfer as deformation_transfer
+from toongeo.geometry import laplacian_align as laplacian_align
+from toongeo.io import read_image as read_image
+from toongeo.io import read_landmarks as read_landmarks
+from toongeo.io import write_landmarks as write_landmarks
+from toongeo.make_avatar import make_avatar as make_avatar
+from toongeo.model import MorphableModel as MorphableModel
+from toongeo.model import default_model as default_model
+from toongeo.pipeline import AlignedFace as AlignedFace
+from toongeo.pipeline import Eyes as Eyes
+from toongeo.pipeline import FaceFit as FaceFit
+from toongeo.pipeline import FitOptions as FitOptions
+from toongeo.pipeline import Rig as Rig
+from toongeo.pipeline import align_face as align_face
+from toongeo.pipeline import bake_eyes as bake_eyes
+from toongeo.pipeline import bake_texture as bake_texture
+from toongeo.pipeline import build_rig as build_rig
+from toongeo.pipeline import diffuse_texture as diffuse_texture
+from toongeo.pipeline import fit_3dmm as fit_3dmm
+from toongeo.pipeline import fit_eyes as fit_eyes
+from toongeo.pipeline import fit_lids as fit_lids
+from toongeo.render import ScaledOrthographicCamera as ScaledOrthographicCamera
+from toongeo.render import render_mesh as render_mesh
+
+__version__: str
+__all__: list[str]

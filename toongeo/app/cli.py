@@ -1,0 +1,62 @@
+"""The command ``toongeo``."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from toongeo import __version__
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments
+        ``sys.argv[1:]`` unless given.
+
+    Returns
+    -------
+    int
+        0 if all went well, 2 on bad input, with one line on standard error that says what and where.
+    """
+    options = _parser().parse_args(arguments)
+    try:
+        options.run(options)
+    except (ValueError, OSError) as error:
+        print(f"toongeo: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="toongeo", description="One portrait and its 68 landmarks in, an animatable 3D face out."
+    )
+    parser.add_argument("--version", action="version", version=f"toongeo {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    make = commands.add_parser("make", help="turn a picture and its landmarks into an avatar")
+    make.add_argument("image", type=Path, metavar="IMAGE")
+    make.add_argument("--landmarks", type=Path, required=True, metavar="FILE", help=".pts, .npy, .csv or .txt")
+    make.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, .obj or .ply")
+    make.add_argument("--texture-size", type=int, default=1024, metavar="N", help="side of the atlas (default 1024)")
+    make.set_defaults(run=_make)
+    demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
+    demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
+    demo.set_defaults(run=_demo)
+    return parser
+
+
+# The commands import what they need when they run, so that `toongeo --help` answers at once.
+
+
+def _make(options: argparse.Namespace) -> None:
+    from toongeo.app.make import make
+
+    make(options.image, options.landmarks, options.output, options.texture_size)
+
+
+def _demo(options: argparse.Namespace) -> None:
+    from toongeo.app.demo import demo
+
+    demo(options.output)

@@ -1,0 +1,101 @@
+"""One picture that shows what became of a face."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from toongeo.avatar import Avatar
+
+EXPRESSIONS = (
+    (
+        "smile",
+        {"mouthSmileLeft": 1.0, "mouthSmileRight": 1.0, "cheekSquintLeft": 0.5, "cheekSquintRight": 0.5},
+    ),
+    ("jaw open", {"jawOpen": 0.8}),
+    ("eyes closed", {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}),
+    (
+        "brows up",
+        {n: 1.0 for n in ("browInnerUpLeft", "browInnerUpRight", "browOuterUpLeft", "browOuterUpRight")},
+    ),
+    ("pucker", {"mouthPucker": 1.0}),
+    ("looks aside", {"eyeLookOutLeft": 0.9, "eyeLookInRight": 0.9, "mouthLeft": 0.6}),
+)
+VIEWS = (("front", 0.0), ("three-quarter", 40.0), ("side", 85.0))
+INK, PAPER = (40, 40, 40), 255
+
+
+def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, tile: int = 320) -> np.ndarray:
+    """Input, clay and textured views, six expressions, and the report, on one sheet.
+
+    Parameters
+    ----------
+    avatar : Avatar
+    img : (H, W, 3) uint8 RGB
+    landmarks : (68, 2) float, px
+    tile : int
+        Side of one picture of the sheet, px.
+
+    Returns
+    -------
+    (3 * tile, 5 * tile, 3) uint8 RGB
+    """
+    views = [
+        [_titled(avatar.render(size=tile, yaw=yaw, textured=textured), f"{look}, {name}") for name, yaw in VIEWS]
+        for look, textured in (("clay", False), ("textured", True))
+    ]
+    posed = [_titled(avatar.render(weights, size=tile), name) for name, weights in EXPRESSIONS]
+    input_tile = _titled(_input(img, landmarks, tile), "input")
+    overlay = _titled(_overlay(avatar, img, landmarks, tile), "aligned face over input")
+    rows = [
+        [input_tile, *views[0], _words(_report_lines(avatar), tile)],
+        [overlay, *views[1], posed[0]],
+        posed[1:],
+    ]
+    return np.vstack([np.hstack(row) for row in rows])
+
+
+def _frame(landmarks: np.ndarray, shape: tuple[int, ...], tile: int) -> tuple[np.ndarray, float]:
+    """Corner and scale of a square around the face."""
+    low, high = np.nanmin(landmarks, 0), np.nanmax(landmarks, 0)
+    side = 1.7 * (high - low).max()
+    return (low + high) / 2 - side / 2 - [0, 0.12 * side], tile / side
+
+
+def _window(img: np.ndarray, corner: np.ndarray, scale: float, tile: int) -> np.ndarray:
+    shift = np.array([[scale, 0, -corner[0] * scale], [0, scale, -corner[1] * scale]])
+    method = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
+    return cv2.warpAffine(img, shift, (tile, tile), flags=method, borderValue=(PAPER,) * 3)
+
+
+def _input(img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
+    corner, scale = _frame(landmarks, img.shape, tile)
+    view = _window(img, corner, scale, tile)
+    for x, y in (landmarks[np.isfinite(landmarks).all(1)] - corner) * scale:
+        cv2.circle(view, (round(x * 16), round(y * 16)), 28, (220, 30, 30), -1, cv2.LINE_AA, shift=4)
+    return view
+
+
+def _overlay(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
+    corner, scale = _frame(landmarks, img.shape, tile)
+    fitted = avatar.fit.camera
+    camera = replace(fitted, scale=fitted.scale * scale, translation=(fitted.translation - corner) * scale)
+    face = avatar.render(size=tile, camera=camera, textured=False).astype(float)
+    return np.rint(0.45 * _window(img, corner, scale, tile) + 0.55 * face).astype(np.uint8)
+
+
+def _titled(view: np.ndarray, title: str) -> np.ndarray:
+    view = np.ascontiguousarray(view)
+    cv2.putText(view, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
+    return view
+
+
+def _words(lines: list[str], tile: int) -> np.ndarray:
+    view = np.full((tile, tile, 3), PAPER, np.uint8)
+    for i, line in enumerate(lines):
+        cv2.putText(view, line, (8, 22 + 17 * i), cv2.FONT_HERSHEY_SIMPLEX, 0.4, INK, 1, cv2.LINE_AA)
+    return view
+
+
+def _report_lines(avatar: Avatar) -> list[str]:
+    return avatar.report.lines()

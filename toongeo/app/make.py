@@ -1,0 +1,34 @@
+"""``toongeo make``: a picture and its landmarks into a file."""
+
+from pathlib import Path
+
+from tqdm import tqdm
+
+from toongeo.avatar import WRITERS, Avatar
+from toongeo.io import read_image, read_landmarks
+from toongeo.make_avatar import STAGES, make_avatar
+
+
+def make(image: Path, landmarks: Path, output: Path, texture_size: int = 1024) -> Avatar:
+    """Read, build, save and report, with a progress line a stage.
+
+    Raises
+    ------
+    ValueError, OSError
+        For bad input or an output that cannot be written; the suffix of the output is checked first.
+    """
+    if output.suffix.lower() not in WRITERS:
+        raise ValueError(f"output: expected a name that ends in {', '.join(WRITERS)}, got {output}")
+    with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
+
+        def announce(stage: str) -> None:
+            bar.update(STAGES.index(stage) - bar.n)
+            bar.set_description(stage)
+
+        avatar = make_avatar(read_image(image), read_landmarks(landmarks), texture_size=texture_size, progress=announce)
+        bar.update(len(STAGES) - bar.n)
+        bar.set_description("done")
+    avatar.save(output)
+    print("\n".join(avatar.report.lines()))
+    print(f"wrote {output}")
+    return avatar

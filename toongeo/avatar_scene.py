@@ -1,0 +1,84 @@
+"""An avatar as meshes with morph targets and a short clip, for the file writers."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from toongeo.io import Scene, SceneAnimation, SceneMesh
+from toongeo.pipeline.rig.fit_eyes import SIDES
+from toongeo.pipeline.rig.gaze import gaze_names
+
+if TYPE_CHECKING:
+    from toongeo.avatar import Avatar
+
+FRAMES_PER_SECOND = 30
+# The clip: (seconds, weights reached then), linear in between.
+CLIP: tuple[tuple[float, dict[str, float]], ...] = (
+    (0.0, {}),
+    (0.5, {}),
+    (0.6, {"eyeBlinkLeft": 1, "eyeBlinkRight": 1}),
+    (0.8, {}),
+    (1.4, {"mouthSmileLeft": 1, "mouthSmileRight": 1, "cheekSquintLeft": 0.4, "cheekSquintRight": 0.4}),
+    (2.0, {"eyeLookOutLeft": 0.8, "eyeLookInRight": 0.8, "mouthSmileLeft": 0.5, "mouthSmileRight": 0.5}),
+    (2.6, {"eyeLookInLeft": 0.8, "eyeLookOutRight": 0.8, "browInnerUpLeft": 0.8, "browInnerUpRight": 0.8}),
+    (3.2, {"jawOpen": 0.7, "browOuterUpLeft": 0.6, "browOuterUpRight": 0.6}),
+    (3.8, {}),
+)
+
+
+def avatar_scene(avatar: "Avatar") -> Scene:
+    """Head and eyeballs of an avatar, and a clip that shows that they move.
+
+    The head has the expressions of the rig as targets; each eyeball is a mesh of its own about its centre and has the
+    four ``eyeLook*`` directions of its side.
+
+    Parameters
+    ----------
+    avatar : Avatar
+
+    Returns
+    -------
+    Scene
+        Meshes ``head``, ``eye_left`` and ``eye_right``, which share one texture.
+    """
+    model = avatar.face.model
+    head = SceneMesh(
+        name="head",
+        vertices=avatar.rig.neutral,
+        faces=model.faces,
+        uv=model.uv,
+        uv_faces=model.uv_faces,
+        texture=avatar.texture,
+        targets=avatar.rig.deltas,
+        target_names=avatar.rig.names,
+    )
+    meshes = (head, *(_eye_mesh(avatar, side) for side in (0, 1)))
+    return Scene(meshes, _clip(meshes))
+
+
+def _eye_mesh(avatar: "Avatar", side: int) -> SceneMesh:
+    eye, names = avatar.eyes.templates[side], gaze_names(SIDES[side])
+    rest = avatar.eyes.vertices(side)
+    return SceneMesh(
+        name=f"eye_{SIDES[side]}",
+        vertices=rest,
+        faces=eye.faces,
+        uv=eye.uv,
+        normals=eye.vertices,
+        texture=avatar.texture,
+        roughness=0.25,
+        targets=np.stack([avatar.eyes.looking(side, {name: 1.0}) - rest for name in names]),
+        target_names=names,
+        pivot=avatar.eyes.centres[side],
+    )
+
+
+def _clip(meshes: tuple[SceneMesh, ...]) -> SceneAnimation:
+    keys = np.array([seconds for seconds, _ in CLIP])
+    times = np.arange(round(keys[-1] * FRAMES_PER_SECOND) + 1) / FRAMES_PER_SECOND
+    weights = {}
+    for mesh in meshes:
+        at_keys = np.array([[weights_then.get(name, 0.0) for name in mesh.target_names] for _, weights_then in CLIP])
+        columns = [np.interp(times, keys, column) for column in at_keys.T]
+        weights[mesh.name] = np.column_stack(columns)
+    return SceneAnimation(times, weights, name="demo")

@@ -1,0 +1,131 @@
+"""What the two forms of Laplacian alignment share: checks, the system's matrix, and its right-hand side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo.geometry._graph import components
+from toongeo.geometry.cotangent_laplacian import cotangent_laplacian
+from toongeo.geometry.uniform_laplacian import uniform_laplacian
+from toongeo.geometry.validate_mesh import validate_mesh
+
+# lambda of Eq. 10, which the paper does not tell. An anchor stops where the pull of the surface meets lambda
+# times its residual. As L has a unit diagonal the pull is a fraction of the displacement, 0.08 of it on a
+# face of 17,000 vertices, so 1000 leaves 1e-4 of the displacement and less than 1e-5 of the face's size.
+DEFAULT_WEIGHT = 1e3
+
+# Smallest weight of an edge of the cotangent Laplacian here: negative ones make rings indefinite, tiny ones
+# tear the mesh apart.
+_CLAMP = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class AnchoredMesh:
+    """A checked mesh with its anchors; `k` given ones, `a` different ones."""
+
+    V: NDArray[np.float64]
+    given: NDArray[np.int64]  # (k,) vertex indices as they came
+    weight: NDArray[np.float64]  # (k,)
+    anchors: NDArray[np.int64]  # (a,) the different ones, sorted
+    group: NDArray[np.int64]  # (k,) given -> anchors
+    component: NDArray[np.int64]  # (a,) component number of each anchor
+    moving: NDArray[np.int64]  # vertices of the components that hold an anchor
+    position: NDArray[np.int64]  # (a,) anchors as indices into `moving`
+    gram: sp.csr_matrix  # L^T L of the moving vertices
+
+    def pull(
+        self, targets: NDArray[np.float64], rest: NDArray[np.float64]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Displacement wanted (a, 3) and weight (a,) of every different anchor; both 0 where missing."""
+        present = np.asarray(np.isfinite(targets).all(axis=1))
+        merged = np.zeros((len(self.anchors), 3))
+        merged[self.group[present]] = targets[present]
+        differs = present & (merged[self.group] != targets).any(axis=1)
+        if differs.any():
+            vertex = self.given[differs.argmax()]
+            rows = np.flatnonzero((self.given == vertex) & present).tolist()
+            raise ValueError(
+                f"targets: expected one target an anchor, got different ones for vertex {vertex} (rows {rows})"
+            )
+        weight = self.total_weight(present)
+        if not weight.any():
+            raise ValueError("weight: expected a target with a weight above 0, got none")
+        return np.where(weight[:, None] > 0, merged - rest[self.anchors], 0.0), weight
+
+    def total_weight(self, present: NDArray[np.bool_]) -> NDArray[np.float64]:
+        """Weight (a,) of the different anchors: that of a repeated one adds up, as in the sum of Eq. 10."""
+        weight = np.where(present, self.weight, 0.0)
+        return np.bincount(self.group, weight, minlength=len(self.anchors)).astype(np.float64)
+
+
+def anchored_mesh(V: ArrayLike, F: ArrayLike, anchors: ArrayLike, weight: ArrayLike, laplacian: str) -> AnchoredMesh:
+    """Check everything and assemble ``L^T L`` on the components that hold an anchor."""
+    V, F = validate_mesh(V, F)
+    given = _checked_anchors(anchors, len(V))
+    weights = _checked_weight(weight, len(given))
+    unique, group = np.unique(given, return_inverse=True)
+    L = _unit_laplacian(V, F, laplacian)
+    component = components(F, len(V))
+    # A component without an anchor would make the system singular; left out, it stays exactly where it is.
+    moving = np.flatnonzero(np.isin(component, component[unique]))
+    L = L if len(moving) == len(V) else L[moving][:, moving]
+    position = np.searchsorted(moving, unique)
+    gram = sp.csr_matrix(L.T @ L)
+    return AnchoredMesh(V, given, weights, unique, group, component[unique], moving, position, gram)
+
+
+def add_anchors(mesh: AnchoredMesh, weight: ArrayLike) -> sp.csr_matrix:
+    """``K = L^T L + S^T W S``, positive definite for positive weights."""
+    diagonal = np.zeros(len(mesh.moving))
+    diagonal[mesh.position] = weight
+    return sp.csr_matrix(mesh.gram + sp.diags_array(diagonal))
+
+
+def checked_targets(targets: ArrayLike, k: int) -> NDArray[np.float64]:
+    """(k, 3) targets, finite or NaN, not all missing."""
+    targets = np.asarray(targets, dtype=np.float64)
+    if targets.shape != (k, 3):
+        raise ValueError(f"targets: expected shape ({k}, 3), a row an anchor, got {targets.shape}")
+    infinite = np.isinf(targets).any(axis=1)
+    if infinite.any():
+        raise ValueError(f"targets: expected finite or NaN values, got infinity in row {infinite.argmax()}")
+    if np.isnan(targets).any(axis=1).all():
+        raise ValueError("targets: expected at least one row without NaN, got none (every anchor is missing)")
+    return targets
+
+
+def _unit_laplacian(V: NDArray[np.float64], F: NDArray[np.int64], name: str) -> sp.csr_matrix:
+    """A Laplacian with unit diagonal, as Eq. 9 has."""
+    if name == "uniform":
+        return uniform_laplacian(F, len(V))
+    if name == "cotangent":
+        C = cotangent_laplacian(V, F, clamp=_CLAMP)
+        diagonal = C.diagonal()
+        return sp.csr_matrix(sp.diags_array(1 / np.where(diagonal > 0, diagonal, 1.0)) @ C)
+    raise ValueError(f"laplacian: expected 'uniform' or 'cotangent', got {name!r}")
+
+
+def _checked_anchors(anchors: ArrayLike, n: int) -> NDArray[np.int64]:
+    anchors = np.asarray(anchors)
+    if anchors.ndim != 1 or len(anchors) == 0 or anchors.dtype.kind not in "iu":
+        raise ValueError(f"anchors: expected integers of shape (k,), k >= 1, got {anchors.dtype} {anchors.shape}")
+    outside = (anchors < 0) | (anchors >= n)
+    if outside.any():
+        raise ValueError(f"anchors: expected vertex indices in 0..{n - 1}, got {anchors[outside.argmax()]}")
+    return anchors.astype(np.int64)
+
+
+def _checked_weight(weight: ArrayLike, k: int) -> NDArray[np.float64]:
+    weight = np.asarray(weight, dtype=np.float64)
+    if weight.shape not in ((), (k,)):
+        raise ValueError(f"weight: expected a number or shape ({k},), got shape {weight.shape}")
+    bad = ~(np.isfinite(weight) & (weight >= 0))
+    if bad.any():
+        raise ValueError(f"weight: expected finite numbers >= 0, got {weight[bad].flat[0]}")
+    if not weight.any():
+        raise ValueError("weight: expected an anchor with a weight above 0, got only zeros")
+    return np.broadcast_to(weight, (k,)).copy()

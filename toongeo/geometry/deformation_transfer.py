@@ -1,0 +1,229 @@
+"""Deformation transfer between two meshes of one topology."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo.geometry._cross import cross
+from toongeo.geometry._factor import factor_spd, solve
+from toongeo.geometry._graph import components
+from toongeo.geometry.validate_mesh import validate_mesh
+
+__all__ = ["DeformationTransfer", "deformation_transfer"]
+
+
+def deformation_transfer(
+    V_source: ArrayLike,
+    V_deformed: ArrayLike,
+    F: ArrayLike,
+    V_target: ArrayLike,
+    *,
+    pinned: ArrayLike | None = None,
+) -> NDArray[np.float64]:
+    """Deform `V_target` as `V_deformed` deforms `V_source` (Pan et al. 2024, Eq. 14-16).
+
+    Parameters
+    ----------
+    V_source : (n, 3) float
+        The source at rest.
+    V_deformed : (n, 3) or (k, n, 3) float
+        The source deformed, once or k times.
+    F : (m, 3) int
+        Triangles of all of them.
+    V_target : (n, 3) float
+        The target at rest.
+    pinned : (p,) int, optional
+        Vertices held where the target has them; see `DeformationTransfer`.
+
+    Returns
+    -------
+    float64 of the shape of `V_deformed`
+        The target deformed.
+
+    Raises
+    ------
+    ValueError
+        As `DeformationTransfer` and its `transfer`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> V = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> F = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    >>> deformation_transfer(V, 2 * V, F, V + 5)[1].round(9)
+    array([7., 5., 5.])
+    """
+    return DeformationTransfer(V_source, F, V_target, pinned=pinned).transfer(V_deformed)
+
+
+class DeformationTransfer:
+    """Sumner and Popovic's deformation transfer with the target's system factored once.
+
+    Every triangle, with a fourth vertex ``v4 = v1 + n / sqrt|n|`` along its normal (Eq. 14 of Pan et al.
+    2024), is mapped by an affine ``Q_j`` from the source at rest to the source deformed (Eq. 15). The
+    target's vertices minimise ``sum_j |Q_j - Q'_j|_F^2`` (Eq. 16, squared as Sumner and Popovic have it,
+    each triangle alike whatever its area). The target's fourth vertices occur in one term each and are
+    eliminated; what remains has the same minimiser and a third of the unknowns.
+
+    The energy does not see translations. A connected component with a pinned vertex is held by it. One
+    without is placed so that its lowest-numbered vertex moves as far as that vertex of the source does;
+    another vertex instead would only shift the component as a whole.
+
+    Parameters
+    ----------
+    V_source : (n, 3) float
+        The source at rest, without degenerate triangles.
+    F : (m, 3) int
+        Triangles of source and target.
+    V_target : (n, 3) float
+        The target at rest, without degenerate triangles: they have no gradient.
+    pinned : (p,) int, optional
+        Vertices held exactly where the target has them, in every transfer.
+
+    Raises
+    ------
+    ValueError
+        On malformed or degenerate meshes, different vertex counts, or pins out of range.
+
+    References
+    ----------
+    R. W. Sumner, J. Popovic, "Deformation transfer for triangle meshes", ACM TOG 23(3), 2004.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> V = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> transfer = DeformationTransfer(V, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], 3 * V, pinned=[0])
+    >>> transfer.transfer(2 * V)[1].round(9)
+    array([6., 0., 0.])
+    """
+
+    def __init__(
+        self, V_source: ArrayLike, F: ArrayLike, V_target: ArrayLike, *, pinned: ArrayLike | None = None
+    ) -> None:
+        self._source, faces = validate_mesh(V_source, F, names=("V_source", "F"), nondegenerate=True)
+        self._target, faces = validate_mesh(V_target, faces, names=("V_target", "F"), nondegenerate=True)
+        n = len(self._source)
+        if len(self._target) != n:
+            raise ValueError(f"V_target: expected {n} vertices as V_source has, got {len(self._target)}")
+        self._corners = np.ascontiguousarray(faces.T)
+        self._rest_normals = _fourth_edges(self._source, self._corners)
+
+        stiffness, self._from_vertices, self._from_normals = _operators(self._source, self._target, self._corners)
+        pins = _checked_pins(pinned, n)
+        self._component = components(faces, n)
+        lowest = np.unique(self._component, return_index=True)[1]
+        self._n_components = len(lowest)
+        self._placed = np.setdiff1d(np.arange(len(lowest)), self._component[pins])  # components without a pin
+        self._placed_by = lowest[self._placed]
+        self._free = np.setdiff1d(np.arange(n), np.concatenate([pins, self._placed_by]))
+        self._factor = factor_spd(stiffness[self._free][:, self._free]) if len(self._free) else None
+
+    def transfer(self, V_deformed: ArrayLike) -> NDArray[np.float64]:
+        """Give the target the deformations of the source.
+
+        Parameters
+        ----------
+        V_deformed : (n, 3) or (k, n, 3) float
+            The source deformed. Triangles may collapse; the source itself gives the target, exactly.
+
+        Returns
+        -------
+        float64 of the same shape
+            The target deformed.
+
+        Raises
+        ------
+        ValueError
+            If the shape does not fit or a coordinate is not finite.
+        """
+        shapes = np.asarray(V_deformed)
+        n = len(self._source)
+        if shapes.ndim not in (2, 3) or shapes.shape[-2:] != (n, 3) or shapes.dtype.kind not in "fiu":
+            raise ValueError(
+                f"V_deformed: expected real numbers of shape ({n}, 3) or (k, {n}, 3), got {shapes.dtype} {shapes.shape}"
+            )
+        if not np.isfinite(shapes).all():
+            raise ValueError(f"V_deformed: expected finite coordinates, got {(~np.isfinite(shapes)).sum()} others")
+        if shapes.ndim == 2:
+            return self._transfer_one(shapes)
+        result = np.empty(shapes.shape)
+        for i, shape in enumerate(shapes):  # one by one: three right-hand sides fit the cache, many do not
+            result[i] = self._transfer_one(shape)
+        return result
+
+    __call__ = transfer
+
+    def _transfer_one(self, shape: NDArray[np.float64]) -> NDArray[np.float64]:
+        moved = shape - self._source
+        tilted = _fourth_edges(np.asarray(shape, dtype=np.float64), self._corners) - self._rest_normals
+        right = self._from_vertices @ moved + self._from_normals @ tilted
+        # Displacements are solved for: no deformation then gives the target to the last bit.
+        displacement = np.zeros_like(moved)
+        if self._factor is not None:
+            displacement[self._free] = solve(self._factor, right[self._free])
+        offset = np.zeros((self._n_components, 3))
+        offset[self._placed] = moved[self._placed_by]
+        return self._target + displacement + offset[self._component]
+
+
+def _fourth_edges(V: NDArray[np.float64], corners: NDArray[np.int64]) -> NDArray[np.float64]:
+    """``n / sqrt|n|`` (m, 3), ``n`` the cross product of two edges (Eq. 14); 0 for a collapsed triangle."""
+    X = np.ascontiguousarray(V.T)
+    a, b, c = (X[:, corner] for corner in corners)
+    normal = cross(b - a, c - a)
+    root = np.sqrt(np.sqrt((normal**2).sum(axis=0)))
+    return np.divide(normal, root, out=np.zeros_like(normal), where=root > 0).T
+
+
+def _dual_edges(
+    V: NDArray[np.float64], corners: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Rows of the inverse of ``[e1, e2, n / sqrt|n|]``, coordinates first: three arrays (3, m)."""
+    X = np.ascontiguousarray(V.T)
+    a, b, c = (X[:, corner] for corner in corners)
+    e1, e2 = b - a, c - a
+    normal = cross(e1, e2)
+    squared = (normal**2).sum(axis=0)
+    return cross(e2, normal) / squared, cross(normal, e1) / squared, normal / squared**0.75
+
+
+def _operators(
+    source: NDArray[np.float64], target: NDArray[np.float64], corners: NDArray[np.int64]
+) -> tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]:
+    """``K`` (n, n), ``B`` (n, n), ``N`` (n, m) with ``K x = B v + N (n / sqrt|n|)`` for a deformed source v.
+
+    The gradients of the target's hat functions are its first two dual edges ``g1, g2`` and
+    ``g0 = -g1 - g2``: they lie in the triangle, so the fourth vertex, which adds a normal part to ``Q'``,
+    drops out. Then ``K`` sums ``g_a . g_b``, and the right-hand side sums ``Q g_a`` with
+    ``Q = [e1, e2, n / sqrt|n|] [h1; h2; h3]`` where ``h`` are the dual edges of the source at rest.
+    """
+    n, m = len(source), corners.shape[1]
+    g1, g2, _ = _dual_edges(target, corners)
+    gradients = (-g1 - g2, g1, g2)
+    h1, h2, h3 = _dual_edges(source, corners)
+    hats = (-h1 - h2, h1, h2)
+
+    rows = np.concatenate([corners[a] for a in range(3) for _ in range(3)])
+    columns = np.concatenate([corners[b] for _ in range(3) for b in range(3)])
+    stiffness = np.concatenate([(ga * gb).sum(axis=0) for ga in gradients for gb in gradients])
+    mixed = np.concatenate([(ga * hb).sum(axis=0) for ga in gradients for hb in hats])
+    tilt = np.concatenate([(ga * h3).sum(axis=0) for ga in gradients])
+    K = sp.csr_matrix((stiffness, (rows, columns)), shape=(n, n))
+    B = sp.csr_matrix((mixed, (rows, columns)), shape=(n, n))
+    N = sp.csr_matrix((tilt, (corners.ravel(), np.tile(np.arange(m), 3))), shape=(n, m))
+    return K, B, N
+
+
+def _checked_pins(pinned: ArrayLike | None, n: int) -> NDArray[np.int64]:
+    if pinned is None:
+        return np.zeros(0, dtype=np.int64)
+    pins = np.asarray(pinned)
+    if pins.ndim != 1 or (pins.size and pins.dtype.kind not in "iu"):
+        raise ValueError(f"pinned: expected integers of shape (p,), got {pins.dtype} {pins.shape}")
+    outside = (pins < 0) | (pins >= n)
+    if outside.any():
+        raise ValueError(f"pinned: expected vertex indices in 0..{n - 1}, got {pins[outside.argmax()]}")
+    return pins.astype(np.int64)

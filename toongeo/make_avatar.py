@@ -1,0 +1,97 @@
+"""Every stage in order: one picture and its landmarks in, an avatar out."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from toongeo.avatar import Avatar
+from toongeo.avatar_report import AvatarReport, landmark_errors, shape_warnings
+from toongeo.io import check_landmarks
+from toongeo.metrics import mesh_quality
+from toongeo.model import MorphableModel, default_model
+from toongeo.pipeline import align_face, bake_eyes, bake_texture, build_rig, fit_3dmm, fit_eyes, fit_lids
+
+STAGES = ("fit", "align", "rig", "eyes", "texture", "report")
+
+
+def make_avatar(
+    img: np.ndarray,
+    landmarks: np.ndarray,
+    *,
+    model: MorphableModel | None = None,
+    texture_size: int = 1024,
+    progress: Callable[[str], None] | None = None,
+) -> Avatar:
+    """A textured, rigged, animatable 3D face from one picture (the whole way of Pan et al. 2024).
+
+    Parameters
+    ----------
+    img : (H, W, 3) uint8 RGB
+    landmarks : (68, 2) float, px
+        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
+    model : MorphableModel, optional
+        :func:`toongeo.default_model` unless another is given.
+    texture_size : int
+        Side of the texture atlas in texels.
+    progress : callable, optional
+        Called with the name of each stage before it starts: one of ``STAGES``.
+
+    Returns
+    -------
+    Avatar
+        What each stage gave is kept in it: ``fit``, ``face``, ``rig``, ``eyes``, ``texture``, ``report``.
+
+    Raises
+    ------
+    ValueError
+        If the picture is not (H, W, 3) uint8, or the landmarks cannot belong to it.
+    """
+    if not (isinstance(img, np.ndarray) and img.dtype == np.uint8 and img.ndim == 3 and img.shape[2] == 3 and img.size):
+        raise ValueError(f"img: expected (H, W, 3) uint8, got {getattr(img, 'dtype', type(img))} {np.shape(img)}")
+    warnings = check_landmarks(landmarks, img.shape)
+    clock = _Clock(progress)
+
+    clock.start("fit")
+    fit = fit_3dmm(img, landmarks, model=model or default_model())
+    clock.start("align")
+    face = align_face(fit, landmarks)
+    clock.start("rig")
+    rig = build_rig(face)
+    clock.start("eyes")
+    eyes = fit_eyes(face)
+    rig = fit_lids(face, rig, eyes)
+    clock.start("texture")
+    texture = bake_eyes(img, face, eyes, bake_texture(img, face, size=texture_size))
+    clock.start("report")
+    quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
+    report = AvatarReport(
+        coarse=landmark_errors(fit, landmarks),
+        aligned=landmark_errors(face, landmarks),
+        quality=quality,
+        seconds=clock.stop(),
+        warnings=(*warnings, *shape_warnings(quality)),
+    )
+    return Avatar(fit=fit, face=face, rig=rig, eyes=eyes, texture=texture, report=report)
+
+
+class _Clock:
+    """Seconds a stage, and a word to the caller before each."""
+
+    def __init__(self, progress: Callable[[str], None] | None) -> None:
+        self._progress = progress
+        self._seconds: dict[str, float] = {}
+        self._running: tuple[str, float] | None = None
+
+    def start(self, stage: str) -> None:
+        self.stop()
+        if self._progress:
+            self._progress(stage)
+        self._running = (stage, time.perf_counter())
+
+    def stop(self) -> dict[str, float]:
+        if self._running:
+            stage, started = self._running
+            self._seconds[stage] = time.perf_counter() - started
+            self._running = None
+        return self._seconds
