@@ -65,7 +65,13 @@ def test_a_wheel_carries_its_data(pip, tmp_path):
 
 def test_an_editable_install_finds_its_data(pip, tmp_path):
     run(*pip, "install", "--no-deps", "--target", tmp_path / "site", "-e", ROOT)
-    code = f"import site; site.addsitedir({str(tmp_path / 'site')!r}); " + PROBE.format(PORTRAIT)
+    # The new site folder goes first: the environment may hold an ordinary install of the library.
+    code = f"""
+import site, sys
+before = list(sys.path)
+site.addsitedir({str(tmp_path / "site")!r})
+sys.path.sort(key=before.__contains__)
+{PROBE.format(PORTRAIT)}"""
     found = run(sys.executable, "-P", "-c", code, cwd=tmp_path)
     assert all(line.startswith(str(ROOT)) for line in found.split())
 

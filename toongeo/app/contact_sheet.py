@@ -48,14 +48,14 @@ def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, til
     input_tile = _titled(_input(img, landmarks, tile), "input")
     overlay = _titled(_overlay(avatar, img, landmarks, tile), "aligned face over input")
     rows = [
-        [input_tile, *views[0], _words(_report_lines(avatar), tile)],
+        [input_tile, *views[0], _words(avatar.report.lines(), tile)],
         [overlay, *views[1], posed[0]],
         posed[1:],
     ]
     return np.vstack([np.hstack(row) for row in rows])
 
 
-def _frame(landmarks: np.ndarray, shape: tuple[int, ...], tile: int) -> tuple[np.ndarray, float]:
+def _frame(landmarks: np.ndarray, tile: int) -> tuple[np.ndarray, float]:
     """Corner and scale of a square around the face."""
     low, high = np.nanmin(landmarks, 0), np.nanmax(landmarks, 0)
     side = 1.7 * (high - low).max()
@@ -69,7 +69,7 @@ def _window(img: np.ndarray, corner: np.ndarray, scale: float, tile: int) -> np.
 
 
 def _input(img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
-    corner, scale = _frame(landmarks, img.shape, tile)
+    corner, scale = _frame(landmarks, tile)
     view = _window(img, corner, scale, tile)
     for x, y in (landmarks[np.isfinite(landmarks).all(1)] - corner) * scale:
         cv2.circle(view, (round(x * 16), round(y * 16)), 28, (220, 30, 30), -1, cv2.LINE_AA, shift=4)
@@ -77,7 +77,7 @@ def _input(img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
 
 
 def _overlay(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
-    corner, scale = _frame(landmarks, img.shape, tile)
+    corner, scale = _frame(landmarks, tile)
     fitted = avatar.fit.camera
     camera = replace(fitted, scale=fitted.scale * scale, translation=(fitted.translation - corner) * scale)
     face = avatar.render(size=tile, camera=camera, textured=False).astype(float)
@@ -93,9 +93,6 @@ def _titled(view: np.ndarray, title: str) -> np.ndarray:
 def _words(lines: list[str], tile: int) -> np.ndarray:
     view = np.full((tile, tile, 3), PAPER, np.uint8)
     for i, line in enumerate(lines):
-        cv2.putText(view, line, (8, 22 + 17 * i), cv2.FONT_HERSHEY_SIMPLEX, 0.4, INK, 1, cv2.LINE_AA)
+        at = (round(0.025 * tile), round((0.07 + 0.052 * i) * tile))
+        cv2.putText(view, line, at, cv2.FONT_HERSHEY_SIMPLEX, 0.0012 * tile, INK, 1, cv2.LINE_AA)
     return view
-
-
-def _report_lines(avatar: Avatar) -> list[str]:
-    return avatar.report.lines()
