@@ -35,6 +35,12 @@ def test_bad_weights_are_refused(avatar):
         avatar.vertices({"jawOpne": 1.0})
     with pytest.raises(ValueError, match="weights: expected 46 values"):
         avatar.vertices(np.zeros(52))
+    with pytest.raises(ValueError, match="weights: expected finite values"):
+        avatar.eye_vertices(0, {"eyeLookUpLeft": np.nan})
+    with pytest.raises(ValueError, match="weights: no expression 'eyeLookUp'"):
+        avatar.eye_vertices(0, {"eyeLookUp": 1.0})
+    with pytest.raises(ValueError, match=r"side: expected 0 \(left\) or 1 \(right\), got 2"):
+        avatar.eye_vertices(2)
 
 
 def test_the_picture_comes_back_when_rendered_from_its_own_camera(avatar, cartoon):
@@ -92,6 +98,42 @@ def test_every_portrait_gives_a_valid_glb(name, shared, node, tmp_path):
     assert (verdict["errors"], verdict["warnings"]) == (0, 0), verdict
 
 
+def test_three_js_loads_the_glb_and_moves_it(glb, avatar, node):
+    (report,) = node("load.mjs", glb)
+    head, left, right = report["meshes"]
+    assert [mesh["name"] for mesh in report["meshes"]] == ["head", "eye_left", "eye_right"]
+    reach = 1e-3 * np.linalg.norm(avatar.rig.deltas, axis=2).max(1)
+    np.testing.assert_allclose([head["reach"][name] for name in avatar.names], reach, atol=2e-6)
+    assert min(*left["reach"].values(), *right["reach"].values()) > 0.3 * 1e-3 * avatar.eyes.radii.min()
+
+
+def test_results_cannot_be_written_to(avatar):
+    for array in (avatar.texture, avatar.rig.deltas, avatar.face.vertices, avatar.eyes.radii, avatar.fit.identity):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+
+
+def eyeball_pixels(avatar, weights, yaw):
+    """Pixels of a 512 px picture in which an eyeball is in front."""
+    from toongeo.render import rasterize
+
+    camera = avatar._camera(512, yaw, 0.0)
+    surfaces = avatar.surfaces(weights)
+    offsets = np.cumsum([0, *(len(surface.vertices) for surface in surfaces[:-1])])
+    V = np.vstack([surface.vertices for surface in surfaces])
+    F = np.vstack([surface.faces + offset for surface, offset in zip(surfaces, offsets, strict=True)])
+    fragments = rasterize(np.column_stack([camera.project(V), camera.depth(V)]), F, 512, 512)
+    return int((fragments.face_ids >= len(surfaces[0].faces)).sum())
+
+
+@pytest.mark.parametrize("name", CARTOONS)
+def test_closed_eyes_hide_the_eyeballs(name, cartoon):
+    result = make_avatar(*cartoon(name))
+    blink = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
+    assert eyeball_pixels(result, {}, 0.0) > 100
+    assert eyeball_pixels(result, blink, 0.0) <= 0.002 * eyeball_pixels(result, {}, 0.0)
+
+
 def test_obj_keeps_vertices_and_names_its_texture(avatar, tmp_path):
     avatar.save(tmp_path / "face.obj")
     data = read_obj(tmp_path / "face.obj")
@@ -138,7 +180,7 @@ def test_stages_are_announced_and_timed(avatar, cartoon):
 
 def test_a_picture_that_is_none_is_refused(cartoon):
     img, landmarks = cartoon("blue_girl")
-    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8, got float64"):
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8 RGB, got float64"):
         make_avatar(img / 255.0, landmarks)
     with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8"):
         make_avatar(img[:0], landmarks)

@@ -6,7 +6,7 @@ The stages, in the order in which :func:`make_avatar` calls them:
 2. :func:`fit_3dmm` - a morphable model posed and shaped by the landmarks.
 3. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.
 4. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face.
-5. :func:`fit_eyes`, :func:`fit_lids` - eyeballs in their sockets, lids that close over them.
+5. :func:`fit_eyes`, :func:`close_lids`, :func:`clear_lids` - eyeballs, and lids that close over them.
 6. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
 7. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
 
@@ -44,7 +44,8 @@ __getattr__, __dir__, __all__ = attach(
         "build_rig": "pipeline",
         "Rig": "pipeline",
         "fit_eyes": "pipeline",
-        "fit_lids": "pipeline",
+        "close_lids": "pipeline",
+        "clear_lids": "pipeline",
         "Eyes": "pipeline",
     },
 )

@@ -20,10 +20,11 @@ from toongeo.pipeline import align_face as align_face
 from toongeo.pipeline import bake_eyes as bake_eyes
 from toongeo.pipeline import bake_texture as bake_texture
 from toongeo.pipeline import build_rig as build_rig
+from toongeo.pipeline import clear_lids as clear_lids
+from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
-from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.render import ScaledOrthographicCamera as ScaledOrthographicCamera
 from toongeo.render import render_mesh as render_mesh
 

@@ -4,14 +4,16 @@ import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from toongeo._read_only import read_only
+from toongeo.avatar_report import AvatarReport
 from toongeo.avatar_scene import avatar_scene
 from toongeo.io import write_glb, write_obj, write_ply
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
 from toongeo.pipeline.rig.gaze import gaze_names
+from toongeo.pipeline.rig.weight_vector import weight_vector
 from toongeo.protocols import Camera
 from toongeo.render import (
     ScaledOrthographicCamera,
@@ -22,9 +24,6 @@ from toongeo.render import (
     studio_light,
     uv_to_px,
 )
-
-if TYPE_CHECKING:
-    from toongeo.avatar_report import AvatarReport
 
 GAZE_NAMES = (*gaze_names("left"), *gaze_names("right"))
 HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
@@ -51,11 +50,14 @@ class Avatar:
     rig: Rig
     eyes: Eyes
     texture: np.ndarray
-    report: "AvatarReport"
+    report: AvatarReport
+
+    def __post_init__(self) -> None:
+        read_only(self, "texture")
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the weights: the expressions of the rig. The eight ``eyeLook*`` names turn the eyes beside them."""
+        """The 46 expressions of the rig. The eight ``eyeLook*`` names, which turn the eyes, are not among them."""
         return self.rig.names
 
     @property
@@ -79,7 +81,10 @@ class Avatar:
         return self.rig.vertices(_split(weights)[0])
 
     def eye_vertices(self, side: int, weights: Weights = None) -> np.ndarray:
-        """Vertices (k, 3), mm, of the left (0) or right (1) eyeball."""
+        """Vertices (k, 3), mm, of the left (0) or right (1) eyeball; weights and errors as for :meth:`vertices`."""
+        if side not in (0, 1):
+            raise ValueError(f"side: expected 0 (left) or 1 (right), got {side!r}")
+        weight_vector(_split(weights)[0], self.names)
         return self.eyes.looking(side, _split(weights)[1])
 
     def surfaces(self, weights: Weights = None) -> list[Surface]:
@@ -126,6 +131,11 @@ class Avatar:
         Returns
         -------
         (size, size, 3) uint8 RGB
+
+        Raises
+        ------
+        ValueError
+            For weights as :meth:`vertices`; if the size is not positive.
         """
         camera = camera or self._camera(size, yaw, pitch)
         surfaces = self.surfaces(weights)
@@ -162,8 +172,9 @@ def _split(weights: Weights) -> tuple[Weights, dict[str, float]]:
     """Weights of the head and weights of the gaze."""
     if not isinstance(weights, Mapping):
         return weights, {}
-    gaze = {name: float(weight) for name, weight in weights.items() if name in GAZE_NAMES}
-    return {name: weight for name, weight in weights.items() if name not in gaze}, gaze
+    gaze = {name: weight for name, weight in weights.items() if name in GAZE_NAMES}
+    turns = dict(zip(GAZE_NAMES, weight_vector(gaze, GAZE_NAMES).tolist(), strict=True))
+    return {name: weight for name, weight in weights.items() if name not in gaze}, turns
 
 
 def _soft_light() -> np.ndarray:
@@ -175,11 +186,11 @@ def _soft_light() -> np.ndarray:
 
 
 def _write_glb(path: Path, avatar: Avatar) -> None:
-    write_glb(path, avatar_scene(avatar))
+    write_glb(path, avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture))
 
 
 def _write_obj(path: Path, avatar: Avatar) -> None:
-    write_obj(path, avatar_scene(avatar))
+    write_obj(path, avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture))
 
 
 def _write_ply(path: Path, avatar: Avatar) -> None:

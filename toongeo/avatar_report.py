@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo.metrics import MeshQuality, landmark_error
+from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.pipeline import AlignedFace, FaceFit
 
 FEW_INTERSECTIONS = 0.003  # of the triangles of the face; more are worth a warning
@@ -19,7 +20,7 @@ class AvatarReport:
     coarse, aligned : part -> RMS
         Landmark error of the fitted and of the aligned face by part, as a fraction of the outer-eye distance.
     quality : MeshQuality
-        Of the front of the neutral face.
+        Of the triangles of the region ``face`` among themselves.
     seconds : stage -> float
     warnings : tuple of sentences
     """
@@ -49,7 +50,7 @@ class AvatarReport:
 def landmark_errors(face: FaceFit | AlignedFace, landmarks: np.ndarray) -> dict[str, float]:
     """Landmark error by part / outer-eye distance (that of the face where an outer corner is missing)."""
     found = face.project(face.vertices[face.landmark_vertices])
-    right, left = np.where(np.isfinite(landmarks), landmarks, found)[[36, 45]]
+    right, left = np.where(np.isfinite(landmarks), landmarks, found)[list(OUTER_EYES)]
     return landmark_error(found, landmarks, scale=float(np.linalg.norm(left - right)))
 
 

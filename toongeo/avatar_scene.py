@@ -1,15 +1,12 @@
 """An avatar as meshes with morph targets and a short clip, for the file writers."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from toongeo.io import Scene, SceneAnimation, SceneMesh
+from toongeo.model import MorphableModel
+from toongeo.pipeline import Eyes, Rig
 from toongeo.pipeline.rig.fit_eyes import SIDES
 from toongeo.pipeline.rig.gaze import gaze_names
-
-if TYPE_CHECKING:
-    from toongeo.avatar import Avatar
 
 FRAMES_PER_SECOND = 30
 # The clip: (seconds, weights reached then), linear in between.
@@ -26,7 +23,7 @@ CLIP: tuple[tuple[float, dict[str, float]], ...] = (
 )
 
 
-def avatar_scene(avatar: "Avatar") -> Scene:
+def avatar_scene(rig: Rig, eyes: Eyes, model: MorphableModel, texture: np.ndarray) -> Scene:
     """Head and eyeballs of an avatar, and a clip that shows that they move.
 
     The head has the expressions of the rig as targets; each eyeball is a mesh of its own about its centre and has the
@@ -34,42 +31,45 @@ def avatar_scene(avatar: "Avatar") -> Scene:
 
     Parameters
     ----------
-    avatar : Avatar
+    rig : Rig
+    eyes : Eyes
+    model : MorphableModel
+        For triangles and texture coordinates.
+    texture : (size, size, 3) uint8 RGB
 
     Returns
     -------
     Scene
         Meshes ``head``, ``eye_left`` and ``eye_right``, which share one texture.
     """
-    model = avatar.face.model
     head = SceneMesh(
         name="head",
-        vertices=avatar.rig.neutral,
+        vertices=rig.neutral,
         faces=model.faces,
         uv=model.uv,
         uv_faces=model.uv_faces,
-        texture=avatar.texture,
-        targets=avatar.rig.deltas,
-        target_names=avatar.rig.names,
+        texture=texture,
+        targets=rig.deltas,
+        target_names=rig.names,
     )
-    meshes = (head, *(_eye_mesh(avatar, side) for side in (0, 1)))
+    meshes = (head, *(_eye_mesh(eyes, side, texture) for side in (0, 1)))
     return Scene(meshes, _clip(meshes))
 
 
-def _eye_mesh(avatar: "Avatar", side: int) -> SceneMesh:
-    eye, names = avatar.eyes.templates[side], gaze_names(SIDES[side])
-    rest = avatar.eyes.vertices(side)
+def _eye_mesh(eyes: Eyes, side: int, texture: np.ndarray) -> SceneMesh:
+    eye, names = eyes.templates[side], gaze_names(SIDES[side])
+    rest = eyes.vertices(side)
     return SceneMesh(
         name=f"eye_{SIDES[side]}",
         vertices=rest,
         faces=eye.faces,
         uv=eye.uv,
         normals=eye.vertices,
-        texture=avatar.texture,
+        texture=texture,
         roughness=0.25,
-        targets=np.stack([avatar.eyes.looking(side, {name: 1.0}) - rest for name in names]),
+        targets=np.stack([eyes.looking(side, {name: 1.0}) - rest for name in names]),
         target_names=names,
-        pivot=avatar.eyes.centres[side],
+        pivot=eyes.centres[side],
     )
 
 

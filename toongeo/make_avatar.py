@@ -7,10 +7,19 @@ import numpy as np
 
 from toongeo.avatar import Avatar
 from toongeo.avatar_report import AvatarReport, landmark_errors, shape_warnings
-from toongeo.io import check_landmarks
+from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
-from toongeo.pipeline import align_face, bake_eyes, bake_texture, build_rig, fit_3dmm, fit_eyes, fit_lids
+from toongeo.pipeline import (
+    align_face,
+    bake_eyes,
+    bake_texture,
+    build_rig,
+    clear_lids,
+    close_lids,
+    fit_3dmm,
+    fit_eyes,
+)
 
 STAGES = ("fit", "align", "rig", "eyes", "texture", "report")
 
@@ -47,9 +56,7 @@ def make_avatar(
     ValueError
         If the picture is not (H, W, 3) uint8, or the landmarks cannot belong to it.
     """
-    if not (isinstance(img, np.ndarray) and img.dtype == np.uint8 and img.ndim == 3 and img.shape[2] == 3 and img.size):
-        raise ValueError(f"img: expected (H, W, 3) uint8, got {getattr(img, 'dtype', type(img))} {np.shape(img)}")
-    warnings = check_landmarks(landmarks, img.shape)
+    check_image(img)
     clock = _Clock(progress)
 
     clock.start("fit")
@@ -57,10 +64,10 @@ def make_avatar(
     clock.start("align")
     face = align_face(fit, landmarks)
     clock.start("rig")
-    rig = build_rig(face)
+    rig = close_lids(face, build_rig(face))
     clock.start("eyes")
-    eyes = fit_eyes(face)
-    rig = fit_lids(face, rig, eyes)
+    eyes = fit_eyes(face, rig)
+    rig = clear_lids(face, rig, eyes)
     clock.start("texture")
     texture = bake_eyes(img, face, eyes, bake_texture(img, face, size=texture_size))
     clock.start("report")
@@ -70,7 +77,7 @@ def make_avatar(
         aligned=landmark_errors(face, landmarks),
         quality=quality,
         seconds=clock.stop(),
-        warnings=(*warnings, *shape_warnings(quality)),
+        warnings=(*fit.report.warnings, *shape_warnings(quality)),
     )
     return Avatar(fit=fit, face=face, rig=rig, eyes=eyes, texture=texture, report=report)
 

@@ -1,9 +1,11 @@
-// node validate.mjs FILE... : the Khronos validator's verdict on each GLB, as a JSON array on stdout.
+// node validate.mjs [--strict] FILE... : the Khronos validator's verdict on each GLB, as a JSON array on stdout.
+// --strict: exit code 1 if there is an error or a warning.
 import { readFile } from 'node:fs/promises';
 import validator from 'gltf-validator';
 
 const verdicts = [];
-for (const file of process.argv.slice(2)) {
+const strict = process.argv.includes('--strict');
+for (const file of process.argv.slice(2).filter((argument) => argument !== '--strict')) {
   const bytes = new Uint8Array(await readFile(file));
   const { issues, info } = await validator.validateBytes(bytes, { uri: file, maxIssues: 200 });
   verdicts.push({
@@ -17,3 +19,4 @@ for (const file of process.argv.slice(2)) {
   });
 }
 console.log(JSON.stringify(verdicts));
+if (strict && verdicts.some((verdict) => verdict.errors + verdict.warnings > 0)) process.exitCode = 1;

@@ -18,12 +18,12 @@ def main(arguments: list[str] | None = None) -> int:
     Returns
     -------
     int
-        0 if all went well, 2 on bad input, with one line on standard error that says what and where.
+        0 if all went well; 2 on bad input or a failed fit, with one line on standard error that says what and where.
     """
     options = _parser().parse_args(arguments)
     try:
         options.run(options)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, RuntimeError) as error:
         print(f"toongeo: {error}", file=sys.stderr)
         return 2
     return 0

@@ -63,9 +63,10 @@ def _frame(landmarks: np.ndarray, tile: int) -> tuple[np.ndarray, float]:
 
 
 def _window(img: np.ndarray, corner: np.ndarray, scale: float, tile: int) -> np.ndarray:
-    shift = np.array([[scale, 0, -corner[0] * scale], [0, scale, -corner[1] * scale]])
     method = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
-    return cv2.warpAffine(img, shift, (tile, tile), flags=method, borderValue=(PAPER,) * 3)
+    resized = cv2.resize(img, None, fx=scale, fy=scale, interpolation=method)
+    shift = np.array([[1, 0, -corner[0] * scale], [0, 1, -corner[1] * scale]])
+    return cv2.warpAffine(resized, shift, (tile, tile), borderValue=(PAPER,) * 3)
 
 
 def _input(img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:

@@ -15,10 +15,12 @@ def make(image: Path, landmarks: Path, output: Path, texture_size: int = 1024) -
     Raises
     ------
     ValueError, OSError
-        For bad input or an output that cannot be written; the suffix of the output is checked first.
+        For bad input or an output that cannot be written; the output is checked before the work.
     """
     if output.suffix.lower() not in WRITERS:
         raise ValueError(f"output: expected a name that ends in {', '.join(WRITERS)}, got {output}")
+    if not output.parent.is_dir():
+        raise OSError(f"output: no folder {output.parent} to write {output.name} to")
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
         def announce(stage: str) -> None:

@@ -1,5 +1,6 @@
 """Meshes and operators; knows no faces."""
 
+from toongeo.geometry.adjacency import adjacency
 from toongeo.geometry.catmull_clark import catmull_clark
 from toongeo.geometry.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.deformation_transfer import DeformationTransfer, deformation_transfer
@@ -14,6 +15,7 @@ from toongeo.geometry.vertex_normals import vertex_normals
 __all__ = [
     "DeformationTransfer",
     "LaplacianAligner",
+    "adjacency",
     "catmull_clark",
     "cotangent_laplacian",
     "deformation_transfer",

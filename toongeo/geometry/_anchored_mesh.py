@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry._graph import components
+from toongeo.geometry._components import components
 from toongeo.geometry.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.uniform_laplacian import uniform_laplacian
 from toongeo.geometry.validate_mesh import validate_mesh

@@ -6,9 +6,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.geometry._components import components
 from toongeo.geometry._cross import cross
 from toongeo.geometry._factor import factor_spd, solve
-from toongeo.geometry._graph import components
 from toongeo.geometry.validate_mesh import validate_mesh
 
 __all__ = ["DeformationTransfer", "deformation_transfer"]

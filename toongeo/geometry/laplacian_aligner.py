@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry._anchored_mesh import DEFAULT_WEIGHT, add_anchors, anchored_mesh, checked_targets
-from toongeo.geometry._factor import factor_spd, one_blas_thread, solve
+from toongeo.geometry._factor import factor_spd, solve
+from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.validate_mesh import validate_vertices
 
 __all__ = ["LaplacianAligner"]
@@ -112,7 +113,7 @@ class LaplacianAligner:
         mesh = self._mesh
         rest = mesh.V if V is None else self._checked_rest(V)
         pull, weight = mesh.pull(checked_targets(targets, len(mesh.given)), rest)
-        with one_blas_thread():
+        with one_thread():
             complete = np.array_equal(weight, self._all_weights)
             forces = self._all_forces @ pull if complete else self._forces(weight, pull)
             displacement = forces.T @ self._Zt
@@ -135,6 +136,6 @@ class LaplacianAligner:
         scale = np.maximum(w, 1.0)  # rows divided by it have entries of order one for every weight
         M = np.diag(1 / scale) + ((w - 1) / scale)[:, None] * G
         forces = np.zeros_like(pull)
-        with one_blas_thread():
+        with one_thread():
             forces[held] = np.linalg.solve(M, (w / scale)[:, None] * pull[held])
         return forces

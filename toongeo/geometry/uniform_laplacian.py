@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from toongeo.geometry._graph import adjacency
+from toongeo.geometry.adjacency import adjacency
 from toongeo.geometry.validate_mesh import validate_faces
 
 __all__ = ["uniform_laplacian"]

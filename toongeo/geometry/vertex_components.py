@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry._graph import components
+from toongeo.geometry._components import components
 from toongeo.geometry.validate_mesh import validate_faces
 
 __all__ = ["vertex_components"]

@@ -5,10 +5,12 @@ half-written remains.
 """
 
 from toongeo.io.atomic_write import atomic_write
+from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
 from toongeo.io.encode_glb import encode_glb
 from toongeo.io.encode_image import encode_image
 from toongeo.io.glb_scene import glb_scene
+from toongeo.io.landmark_array import landmark_array
 from toongeo.io.read_glb import GlbDocument, read_glb
 from toongeo.io.read_image import read_image
 from toongeo.io.read_landmarks import read_landmarks
@@ -28,10 +30,12 @@ __all__ = [
     "SceneAnimation",
     "SceneMesh",
     "atomic_write",
+    "check_image",
     "check_landmarks",
     "encode_glb",
     "encode_image",
     "glb_scene",
+    "landmark_array",
     "read_glb",
     "read_image",
     "read_landmarks",

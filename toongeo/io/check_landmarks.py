@@ -9,7 +9,7 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.io._landmark_array import landmark_array
+from toongeo.io.landmark_array import landmark_array
 
 __all__ = ["check_landmarks"]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.io._landmark_array import landmark_array
+from toongeo.io.landmark_array import landmark_array
 
 __all__ = ["read_landmarks"]
 

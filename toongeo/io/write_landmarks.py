@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.io._landmark_array import landmark_array
 from toongeo.io.atomic_write import atomic_write
+from toongeo.io.landmark_array import landmark_array
 from toongeo.io.read_landmarks import EXACT
 
 __all__ = ["write_landmarks"]

@@ -1,8 +1,10 @@
 """The eyeball of a morphable model."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
+
+from toongeo._read_only import read_only
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +41,7 @@ class EyeballTemplate:
     pupil_angle: float
 
     def __post_init__(self) -> None:
-        for value in vars(self).values():
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
+        read_only(self, *(field.name for field in fields(self)))
 
     def placed(self, identity: np.ndarray | None = None) -> tuple[np.ndarray, float]:
         """Centre (3,) and radius, mm, for identity coefficients (k,); None is the mean face."""

@@ -1,8 +1,9 @@
-"""The iBUG-68 landmark scheme: names, parts and the mirror permutation, from ``data_templates/ibug68.csv``.
+"""The iBUG-68 landmark scheme: names, parts, mirror permutation and rims, from tables in ``data_templates/``.
 
 ``PARTS`` maps a part to its points (indices in order), ``INNER`` are the 51 points that are not on the
 jaw, ``MIRROR`` is the permutation with which a mirrored picture's points read ``mirrored[MIRROR]``, and
-``OUTER_EYES`` are the two outer eye corners, whose distance is the usual unit of landmark errors.
+``OUTER_EYES`` are the two outer eye corners, whose distance is the usual unit of landmark errors. ``LID_RIMS`` and
+``LIP_RIMS`` map the name of a rim to its points from corner to corner.
 
 >>> PARTS["jaw"][[0, -1]], len(INNER), OUTER_EYES
 (array([ 0, 16]), 51, (36, 45))
@@ -17,12 +18,17 @@ import numpy as np
 
 from toongeo.model.data_path import data_path
 
-__all__ = ["INNER", "MIRROR", "NAMES", "OUTER_EYES", "PARTS"]
+__all__ = ["INNER", "LID_RIMS", "LIP_RIMS", "MIRROR", "NAMES", "OUTER_EYES", "PARTS"]
 
 
-def _rows() -> list[dict[str, str]]:
-    with open(data_path("data_templates/ibug68.csv"), encoding="utf-8", newline="") as file:
+def _rows(table: str) -> list[dict[str, str]]:
+    with open(data_path(f"data_templates/{table}"), encoding="utf-8", newline="") as file:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+
+def _rims(kind: str) -> MappingProxyType[str, tuple[int, ...]]:
+    rows = [row for row in _rows("rims.csv") if row["kind"] == kind]
+    return MappingProxyType({row["name"]: tuple(map(int, row["points"].split())) for row in rows})
 
 
 def _frozen(indices: list[int]) -> np.ndarray:
@@ -31,7 +37,7 @@ def _frozen(indices: list[int]) -> np.ndarray:
     return array
 
 
-_ROWS = _rows()
+_ROWS = _rows("ibug68.csv")
 _PART = [row["part"] for row in _ROWS]
 
 NAMES = tuple(row["name"] for row in _ROWS)
@@ -41,3 +47,4 @@ PARTS = MappingProxyType(
 INNER = _frozen([k for k, part in enumerate(_PART) if part != "jaw"])
 MIRROR = _frozen([int(row["mirror"]) for row in _ROWS])
 OUTER_EYES = (NAMES.index("eye_right_outer_corner"), NAMES.index("eye_left_outer_corner"))
+LID_RIMS, LIP_RIMS = _rims("lid"), _rims("lip")

@@ -2,10 +2,11 @@
 
 import difflib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
+from toongeo._read_only import read_only
 from toongeo.model.eyeball_template import EyeballTemplate
 
 
@@ -58,9 +59,7 @@ class MorphableModel:
     eyes: tuple[EyeballTemplate, EyeballTemplate]
 
     def __post_init__(self) -> None:
-        for value in [*vars(self).values(), *self.contour_lines, *self.regions.values()]:
-            if isinstance(value, np.ndarray):
-                value.setflags(write=False)
+        read_only(self, *(field.name for field in fields(self) if field.name != "eyes"))
 
     def vertices(self, identity: np.ndarray | None = None, expression: np.ndarray | None = None) -> np.ndarray:
         """Vertices (n, 3), mm, for identity (k,) and expression (e,) coefficients; None is zero.

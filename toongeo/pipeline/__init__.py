@@ -5,8 +5,9 @@ from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.rig.build_rig import Rig, build_rig
+from toongeo.pipeline.rig.clear_lids import clear_lids
+from toongeo.pipeline.rig.close_lids import close_lids
 from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
-from toongeo.pipeline.rig.fit_lids import fit_lids
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
 from toongeo.pipeline.texture.bake_texture import bake_texture
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
@@ -21,8 +22,9 @@ __all__ = [
     "bake_eyes",
     "bake_texture",
     "build_rig",
+    "clear_lids",
+    "close_lids",
     "diffuse_texture",
     "fit_3dmm",
     "fit_eyes",
-    "fit_lids",
 ]

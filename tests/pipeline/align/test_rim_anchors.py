@@ -1,12 +1,13 @@
 import numpy as np
 import pytest
 
-from toongeo.pipeline.align.rim_anchors import LIDS, LIPS, rim_anchors, rim_path
+from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS
+from toongeo.pipeline.align.rim_anchors import rim_anchors, rim_path
 
 
-@pytest.mark.parametrize("rim", [*LIDS, *LIPS])
-def test_a_rim_is_a_path_of_edges_through_its_landmarks(model, rim):
-    path = rim_path(model, rim)
+@pytest.mark.parametrize(("name", "rim"), [*LID_RIMS.items(), *LIP_RIMS.items()])
+def test_a_rim_is_a_path_of_edges_through_its_landmarks(model, name, rim):
+    path = rim_path(model, name)
     edges = {frozenset(edge) for face in model.faces for edge in zip(face, np.roll(face, 1), strict=True)}
     assert all(frozenset(edge) in edges for edge in zip(path[:-1], path[1:], strict=True))
     places = [list(path).index(vertex) for vertex in model.landmarks[list(rim)]]
@@ -24,8 +25,8 @@ def test_a_shift_of_all_landmarks_shifts_the_rims(model):
 def test_lips_take_displacements_between_those_of_their_landmarks(model, rng):
     displacement = rng.normal(size=(68, 1))
     vertices, moved = rim_anchors(model, displacement)
-    upper = np.isin(vertices, rim_path(model, LIPS[2]))
-    bounds = displacement[list(LIPS[2])]
+    upper = np.isin(vertices, rim_path(model, "lip_upper_inner"))
+    bounds = displacement[list(LIP_RIMS["lip_upper_inner"])]
     assert (moved[upper] >= bounds.min() - 1e-12).all() and (moved[upper] <= bounds.max() + 1e-12).all()
 
 

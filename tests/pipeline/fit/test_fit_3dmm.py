@@ -251,9 +251,17 @@ def test_the_result(model, face):
     report = fit.report
     assert report.status == "FTOL_REACHED"
     assert report.loss == pytest.approx(
-        FitOptions().landmark_weight * report.landmark_loss + FitOptions().prior_weight * report.prior_loss
+        FitOptions().landmark_weight * report.landmark_loss + report.prior_weight * report.prior_loss
     )
+    assert report.prior_weight == FitOptions().prior_weight  # a photograph's misfit is what the prior expects
     assert report.passes >= 1 and report.evaluations > 10 and report.seconds > 0
+
+
+def test_the_prior_counts_more_where_no_face_of_the_model_fits():
+    report = fit_3dmm(None, drawing("beethoven")).report
+    assert report.prior_weight > 2 * FitOptions().prior_weight
+    expected = FitOptions().landmark_weight * report.landmark_loss + report.prior_weight * report.prior_loss
+    assert report.loss == pytest.approx(expected)
 
 
 def test_arrays_of_the_result_are_read_only(face):
@@ -337,10 +345,12 @@ def test_a_model_without_the_68_landmarks(model, face):
 @pytest.mark.parametrize(
     ("name", "value", "message"),
     [
-        ("prior_weight", -1.0, "prior_weight: expected a finite number >= 0, got -1.0"),
+        ("prior_weight", -1.0, "prior_weight: expected a finite number > 0, got -1.0"),
         ("landmark_weight", 0.0, "landmark_weight: expected a finite number > 0, got 0.0"),
-        ("expression_weight", float("nan"), "expression_weight: expected a finite number >= 0"),
-        ("max_passes", 0, "max_passes: expected a finite number > 0, got 0"),
+        ("expression_weight", float("nan"), "expression_weight: expected a finite number > 0"),
+        ("max_passes", 0, "max_passes: expected an integer >= 1, got 0"),
+        ("max_evaluations", 10.5, "max_evaluations: expected an integer >= 1, got 10.5"),
+        ("jaw_weight", -0.1, "jaw_weight: expected a finite number >= 0, got -0.1"),
         ("tolerance", float("inf"), "tolerance: expected a finite number > 0"),
         ("jaw_tangent", 1.5, r"jaw_tangent: expected a number in \[0, 1\], got 1.5"),
     ],

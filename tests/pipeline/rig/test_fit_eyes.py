@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from toongeo.pipeline import align_face, fit_3dmm, fit_eyes
+from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_eyes
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.rig.fit_eyes import _inset, _robust_sphere
 
@@ -51,7 +51,7 @@ def test_the_template_gets_its_own_eyeballs(model, cartoon):
     """Where alignment moved nothing, the sphere that belongs to the fitted face comes back."""
     fit = fit_3dmm(*cartoon("astronaut"))
     face = align_face(fit, fit.project(fit.vertices[fit.landmark_vertices]))
-    eyes = fit_eyes(face)
+    eyes = fit_eyes(face, build_rig(face))
     for side in (0, 1):
         centre, radius = model.eyes[side].placed(fit.identity)
         inset = eyes.report[f"inset_{('left', 'right')[side]}_mm"]

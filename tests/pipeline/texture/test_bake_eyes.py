@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from toongeo.pipeline import align_face, bake_eyes, fit_3dmm, fit_eyes
+from toongeo.pipeline import align_face, bake_eyes, build_rig, fit_3dmm, fit_eyes
 from toongeo.pipeline.texture.bake_eyes import WHITE, _disc_fragments
 from toongeo.render import sample_image, uv_to_px
 
@@ -10,7 +10,7 @@ from toongeo.render import sample_image, uv_to_px
 def stages(cartoon):
     img, landmarks = cartoon("manga_girl")
     face = align_face(fit_3dmm(img, landmarks), landmarks)
-    return img, face, fit_eyes(face)
+    return img, face, fit_eyes(face, build_rig(face))
 
 
 @pytest.fixture(scope="module")
@@ -51,3 +51,13 @@ def test_what_is_not_seen_is_white(stages, blank):
         back = (eye.vertices[:, 2] < -0.2) & (eye.vertices[:, 2] > -0.9)  # not the edge of the disc
         texels = sample_image(atlas, uv_to_px(eye.uv[back], 512, 512))
         assert np.abs(texels - WHITE).max() <= 1
+
+
+def test_bad_arguments_are_named(stages, blank):
+    img, face, eyes = stages
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8 RGB, got float64"):
+        bake_eyes(img / 255, face, eyes, blank)
+    with pytest.raises(
+        ValueError, match=r"texture: expected \(size, size, 3\) uint8, got uint8 of shape \(512, 100, 3\)"
+    ):
+        bake_eyes(img, face, eyes, blank[:, :100])

@@ -117,7 +117,7 @@ def test_opening_mask_of_a_square_diamond():
 
 
 def test_bad_arguments_are_named(face, img):
-    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8, got float64"):
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8 RGB, got float64"):
         bake_texture(img / 255.0, face)
-    with pytest.raises(ValueError, match="size: expected at least 1 texel, got 0"):
-        bake_texture(img, face, size=0)
+    with pytest.raises(ValueError, match="size: expected at least 32 texels, got 31"):
+        bake_texture(img, face, size=31)

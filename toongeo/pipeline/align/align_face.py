@@ -7,7 +7,9 @@ from typing import Literal
 
 import numpy as np
 
+from toongeo._read_only import read_only
 from toongeo.geometry import laplacian_align, vertex_normals
+from toongeo.io import landmark_array
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 from toongeo.pipeline.align.rim_anchors import rim_anchors
@@ -41,6 +43,9 @@ class AlignedFace:
     model: MorphableModel
     fit: FaceFit
     report: dict[str, float]
+
+    def __post_init__(self) -> None:
+        read_only(self, "vertices", "landmark_vertices")
 
     @property
     def faces(self) -> np.ndarray:
@@ -91,15 +96,12 @@ def align_face(
     Raises
     ------
     ValueError
-        If landmarks have another shape or none is finite.
+        If landmarks have another shape, hold infinities or are all missing, the weight is negative or not finite, or
+        the Laplacian is unknown.
     """
     started = time.perf_counter()
-    landmarks = np.asarray(landmarks, float)
-    if landmarks.shape != (68, 2):
-        raise ValueError(f"landmarks: expected shape (68, 2), got {landmarks.shape}")
+    landmarks = landmark_array(landmarks)
     seen = np.isfinite(landmarks).all(1)
-    if not seen.any():
-        raise ValueError("landmarks: expected at least one finite row, got none")
     V = fit.vertices
     anchors, targets_px = _merged(fit.landmark_vertices[seen], landmarks[seen])
     rim, rim_shift_px = rim_anchors(fit.model, landmarks - fit.project(V[fit.landmark_vertices]))

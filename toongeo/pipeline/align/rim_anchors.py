@@ -7,24 +7,17 @@ import scipy.sparse as sp
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from scipy.sparse.csgraph import dijkstra
 
+from toongeo.geometry import adjacency
 from toongeo.model import MorphableModel
-
-# iBUG-68 points from corner to corner of each rim. Lids are round: their displacement is interpolated by cubic splines.
-# Lips touch: monotone interpolation, which never overshoots, keeps them from crossing.
-LIDS = ((36, 37, 38, 39), (36, 41, 40, 39), (42, 43, 44, 45), (42, 47, 46, 45))
-LIPS = (
-    (48, 49, 50, 51, 52, 53, 54),
-    (48, 59, 58, 57, 56, 55, 54),
-    (60, 61, 62, 63, 64),
-    (60, 67, 66, 65, 64),
-)
+from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS
 
 
 def rim_anchors(model: MorphableModel, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Vertices on the lid and lip rims between landmarks, and how they should move if the landmarks move so.
 
     A landmark moves one vertex; what lies between two of them follows only loosely. Rims are curves that the drawing
-    shows, so the vertices along each take the displacement interpolated between its landmarks by arc length.
+    shows, so the vertices along each take the displacement interpolated between its landmarks by arc length: by cubic
+    splines along lids, which are round, and by monotone ones along lips, which touch and must not overshoot.
 
     Parameters
     ----------
@@ -40,13 +33,14 @@ def rim_anchors(model: MorphableModel, displacement: np.ndarray) -> tuple[np.nda
     """
     seen = np.isfinite(displacement).all(1)
     vertices, moves = [], []
-    for rim, path, knots in _rim_paths(model):
+    for name, (path, knots) in _rim_paths(model).items():
+        rim = LID_RIMS.get(name) or LIP_RIMS[name]
         known = [i for i, landmark in enumerate(rim) if seen[landmark]]
         if len(known) < 2:
             continue
         length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(model.mean[path], axis=0), axis=1))]
         values = displacement[[rim[i] for i in known]]
-        interpolator = CubicSpline if rim in LIDS and len(known) > 2 else PchipInterpolator
+        interpolator = CubicSpline if name in LID_RIMS and len(known) > 2 else PchipInterpolator
         first, last = knots[known[0]], knots[known[-1]]
         between = np.setdiff1d(np.arange(first, last + 1), knots)
         vertices.append(path[between])
@@ -58,24 +52,21 @@ def rim_anchors(model: MorphableModel, displacement: np.ndarray) -> tuple[np.nda
     return found[free], np.concatenate(moves)[first_at][free]
 
 
-def rim_path(model: MorphableModel, rim: tuple[int, ...]) -> np.ndarray:
-    """Vertices (k,) along one of the rims ``LIDS`` and ``LIPS``, from corner to corner, landmarks included."""
-    return next(path for landmarks, path, _ in _rim_paths(model) if landmarks == rim)
+def rim_path(model: MorphableModel, name: str) -> np.ndarray:
+    """Vertices (k,) along a rim of :mod:`toongeo.model.ibug68`, from corner to corner, landmarks included."""
+    return _rim_paths(model)[name][0]
 
 
 @lru_cache(maxsize=4)
-def _rim_paths(model: MorphableModel) -> list[tuple[tuple[int, ...], np.ndarray, np.ndarray]]:
-    """For each rim its landmarks, the vertices from corner to corner, and where on that path the landmarks are."""
+def _rim_paths(model: MorphableModel) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """For each rim its vertices from corner to corner, and where on that path its landmarks are."""
     near = np.any([model.region(name) for name in ("mouth", "eye_left", "eye_right", "lips")], axis=0)
-    i, j = model.faces[:, [0, 1, 2]].ravel(), model.faces[:, [1, 2, 0]].ravel()
-    i, j = np.r_[i, j], np.r_[j, i]
-    inside = near[i] & near[j]
-    i, j = i[inside], j[inside]
-    n = len(model.mean)
-    lengths = sp.csr_array((np.linalg.norm(model.mean[i] - model.mean[j], axis=1), (i, j)), shape=(n, n))
-    lengths.data /= 2  # each edge was summed over its two triangles
-    paths: list[tuple[tuple[int, ...], np.ndarray, np.ndarray]] = []
-    for rim in (*LIDS, *LIPS):
+    A = adjacency(model.faces, len(model.mean)).tocoo()
+    inside = near[A.row] & near[A.col]
+    i, j = A.row[inside], A.col[inside]
+    lengths = sp.csr_array((np.linalg.norm(model.mean[i] - model.mean[j], axis=1), (i, j)), shape=A.shape)
+    paths = {}
+    for name, rim in (*LID_RIMS.items(), *LIP_RIMS.items()):
         path = [int(model.landmarks[rim[0]])]
         knots = [0]
         for a, b in zip(rim[:-1], rim[1:], strict=True):
@@ -85,5 +76,5 @@ def _rim_paths(model: MorphableModel) -> list[tuple[tuple[int, ...], np.ndarray,
                 leg.append(int(previous[leg[-1]]))
             path += leg[-2::-1]
             knots.append(len(path) - 1)
-        paths.append((rim, np.array(path), np.array(knots)))
+        paths[name] = np.array(path), np.array(knots)
     return paths

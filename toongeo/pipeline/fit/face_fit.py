@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo._read_only import read_only
+
 if TYPE_CHECKING:
     from toongeo.model.morphable_model import MorphableModel
     from toongeo.render.camera import ScaledOrthographicCamera
@@ -28,6 +30,8 @@ class FitReport:
         Placements of the jaw points; calls of the loss in all passes.
     landmark_loss, prior_loss : float
         Eq. 4 (errors in outer-eye distances) and Eq. 6 of Pan et al. 2024, unweighted.
+    prior_weight : float
+        ``w_r`` of Eq. 3 in the last pass: that of the options, or more where the face misses its landmarks by much.
     loss : float
         Their weighted sum, Eq. 3.
     rms_px : float
@@ -46,6 +50,7 @@ class FitReport:
     evaluations: int
     landmark_loss: float
     prior_loss: float
+    prior_weight: float
     loss: float
     rms_px: float
     rms_percent: float
@@ -82,9 +87,7 @@ class FaceFit:
     light: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
-        for array in (self.identity, self.expression, self.landmark_vertices, self.albedo, self.light):
-            if array is not None:
-                array.setflags(write=False)
+        read_only(self, "identity", "expression", "landmark_vertices", "albedo", "light")
 
     @cached_property
     def vertices(self) -> NDArray[np.float64]:

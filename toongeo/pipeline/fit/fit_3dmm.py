@@ -7,6 +7,7 @@ import time
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_landmarks import check_landmarks
 from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import INNER, OUTER_EYES
@@ -16,7 +17,6 @@ from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
-from toongeo.pipeline.fit.one_thread import one_thread
 
 __all__ = ["fit_3dmm"]
 
@@ -108,6 +108,7 @@ def fit_3dmm(
             evaluations=solution.evaluations,
             landmark_loss=solution.landmark_loss,
             prior_loss=solution.prior_loss,
+            prior_weight=solution.prior_weight,
             loss=solution.loss,
             rms_px=rms_px,
             rms_percent=100 * rms_px / outer_eye_px,

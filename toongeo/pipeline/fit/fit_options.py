@@ -9,6 +9,9 @@ import numpy as np
 __all__ = ["FitOptions"]
 
 
+_MAY_BE_ZERO = ("jaw_weight", "jaw_tangent")
+
+
 @dataclass(frozen=True)
 class FitOptions:
     """Weights and limits of `fit_3dmm`; the defaults were found on 3D ground truth.
@@ -39,7 +42,8 @@ class FitOptions:
     Raises
     ------
     ValueError
-        If a weight is negative or not finite, or a limit is not positive.
+        If a jaw weight is negative, another weight or a limit not positive, or one of them not finite. Without its
+        prior the fit has no unique answer.
     """
 
     landmark_weight: float = 1.0
@@ -56,9 +60,11 @@ class FitOptions:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            limit = field.name.startswith(("max_", "tolerance", "landmark_"))
-            if not (np.isfinite(value) and (value > 0 if limit else value >= 0)):
-                wanted = "a finite number > 0" if limit else "a finite number >= 0"
+            counted = field.name in ("max_passes", "max_evaluations")
+            if counted and not (isinstance(value, int) and value >= 1):
+                raise ValueError(f"{field.name}: expected an integer >= 1, got {value!r}")
+            if not (np.isfinite(value) and (value >= 0 if field.name in _MAY_BE_ZERO else value > 0)):
+                wanted = "a finite number >= 0" if field.name in _MAY_BE_ZERO else "a finite number > 0"
                 raise ValueError(f"{field.name}: expected {wanted}, got {value!r}")
         if self.jaw_tangent > 1:
             raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")

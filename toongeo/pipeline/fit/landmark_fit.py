@@ -38,6 +38,7 @@ class Solution:
     landmark_vertices: NDArray[np.int64]
     landmark_loss: float
     prior_loss: float
+    prior_weight: float
     loss: float
     status: str
     passes: int
@@ -132,6 +133,7 @@ class LandmarkFit:
             landmark_vertices=placed,
             landmark_loss=loss.landmark(x)[0],
             prior_loss=loss.prior(x)[0],
+            prior_weight=loss.prior_weight,
             loss=minimum.value,
             status=minimum.status,
             passes=passes,

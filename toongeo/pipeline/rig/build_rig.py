@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from toongeo._read_only import read_only
 from toongeo.geometry import DeformationTransfer
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
@@ -33,6 +34,9 @@ class Rig:
     neutral: np.ndarray
     deltas: np.ndarray
     report: dict[str, float]
+
+    def __post_init__(self) -> None:
+        read_only(self, "neutral", "deltas")
 
     def vertices(self, weights: Mapping[str, float] | np.ndarray | None = None) -> np.ndarray:
         """Vertices (n, 3), mm, for weights by name or a vector (k,); None is the neutral face.

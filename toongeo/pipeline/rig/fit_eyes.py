@@ -5,10 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from toongeo._read_only import read_only
 from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.align.similarity import similarity
+from toongeo.pipeline.rig.build_rig import Rig
 from toongeo.pipeline.rig.gaze import gaze_rotation
 
 SIDES = ("left", "right")
@@ -16,6 +18,7 @@ GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame
 CLEARANCE = 0.01  # of the radius: how far lids stay off the eyeball
 # Of the radius: s.d. of centre and radius about the template's eyeball, carried along with the lids.
 PRIOR = np.array([0.15, 0.15, 0.15, 0.03])
+BLINK_WEIGHTS = np.array([0.0, 0.25, 0.5, 0.75])  # at 1 the lids are put onto the eyeball
 RIM = 0.04  # of the radius: s.d. of the lid rim about the sphere
 HUBER = 2.0  # s.d. beyond which a rim vertex pulls with constant force
 
@@ -38,6 +41,9 @@ class Eyes:
     templates: tuple[EyeballTemplate, EyeballTemplate]
     report: dict[str, float]
 
+    def __post_init__(self) -> None:
+        read_only(self, "centres", "radii")
+
     def vertices(self, side: int, rotation: np.ndarray | None = None) -> np.ndarray:
         """Vertices (k, 3), mm, of eyeball 0 (left) or 1 (right), turned by a rotation (3, 3) of the gaze."""
         unit = self.templates[side].vertices
@@ -49,16 +55,19 @@ class Eyes:
         return self.vertices(side, gaze_rotation(SIDES[side], weights))
 
 
-def fit_eyes(face: AlignedFace) -> Eyes:
+def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
     """A sphere for each socket, moved in until no lid touches it (Pan et al. 2024, section 4.3).
 
     The template's eyeball is carried along by the similarity that best explains how the rim of the lids moved, refined
     by a robust fit of the sphere to that rim, and then moved back along the resting gaze until every lid vertex is
-    outside. That they stay outside in every expression is for :func:`toongeo.fit_lids`.
+    outside: in the neutral face, and all the way while the eye closes. A blendshape moves lids on straight lines,
+    which cut the corner that a real lid goes around.
 
     Parameters
     ----------
     face : AlignedFace
+    rig : Rig
+        For its blinks.
 
     Returns
     -------
@@ -76,7 +85,9 @@ def fit_eyes(face: AlignedFace) -> Eyes:
         centre, radius = _robust_sphere(face.vertices[rim], ratios, scale * rotation @ centre + shift, scale * radius)
         lids = np.flatnonzero(model.region(f"eyelid_upper_{name}") | model.region(f"eyelid_lower_{name}"))
         lids = np.union1d(lids, rim)
-        inset = _inset(face.vertices[lids] - centre, radius * (1 + CLEARANCE))
+        blink = rig.deltas[rig.names.index(f"eyeBlink{name.capitalize()}"), lids]
+        path = face.vertices[lids] + BLINK_WEIGHTS[:, None, None] * blink
+        inset = _inset(path.reshape(-1, 3) - centre, radius * (1 + CLEARANCE))
         centres[side], radii[side] = centre - inset * GAZE, radius
         report[f"inset_{name}_mm"] = inset
     report["seconds"] = time.perf_counter() - started

@@ -5,6 +5,7 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
+from toongeo.io import check_image
 from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.fit_eyes import Eyes
@@ -33,7 +34,15 @@ def bake_eyes(img: np.ndarray, face: AlignedFace, eyes: Eyes, texture: np.ndarra
     Returns
     -------
     (size, size, 3) uint8 RGB
+
+    Raises
+    ------
+    ValueError
+        If the picture is not (H, W, 3) uint8, or the texture not square uint8 RGB.
     """
+    check_image(img)
+    if texture.dtype != np.uint8 or texture.ndim != 3 or texture.shape[0] != texture.shape[1] or texture.shape[2] != 3:
+        raise ValueError(f"texture: expected (size, size, 3) uint8, got {texture.dtype} of shape {texture.shape}")
     atlas = texture.copy()
     landmarks = face.project(face.vertices[face.landmark_vertices])
     for side, rims in enumerate((EYE_LEFT, EYE_RIGHT)):
@@ -51,7 +60,7 @@ def bake_eyes(img: np.ndarray, face: AlignedFace, eyes: Eyes, texture: np.ndarra
         column = np.clip(np.rint(at[:, 0]), 0, crop.shape[1] - 1).astype(int)
         row = np.clip(np.rint(at[:, 1]), 0, crop.shape[0] - 1).astype(int)
         seen = opening[row, column] & (np.einsum("kc,kc->k", weights, ahead[corners]) > 0)
-        atlas[box] = _disc_image(atlas.shape, box, rows, columns, sample_image(crop, at), seen)
+        atlas[box] = _disc_image(rows - rows.min(), columns - columns.min(), sample_image(crop, at), seen)
     return atlas
 
 
@@ -81,19 +90,12 @@ def _disc_fragments(template: EyeballTemplate, size: int) -> Fragments:
     return rasterize(uv_to_px(template.uv, size, size), template.faces, size, size)
 
 
-def _disc_image(
-    shape: tuple[int, ...],
-    box: tuple[slice, slice],
-    rows: np.ndarray,
-    columns: np.ndarray,
-    colours: np.ndarray,
-    seen: np.ndarray,
-) -> np.ndarray:
+def _disc_image(rows: np.ndarray, columns: np.ndarray, colours: np.ndarray, seen: np.ndarray) -> np.ndarray:
     """The square of the atlas about a disc: seen colours, diffused outwards and faded to white."""
-    image, known = np.full(shape, WHITE), np.zeros(shape[:2], bool)
+    shape = rows.max() + 1, columns.max() + 1
+    image, known = np.full((*shape, 3), WHITE), np.zeros(shape, bool)
     image[rows[seen], columns[seen]] = colours[seen]
     known[rows[seen], columns[seen]] = True
-    image, known = image[box], known[box]
     if known.any():
         distance = cv2.distanceTransform((~known).astype(np.uint8), cv2.DIST_L2, 5)[..., None]
         fade = np.clip(distance / (FADE * known.shape[1]), 0, 1)

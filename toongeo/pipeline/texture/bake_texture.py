@@ -5,6 +5,7 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
+from toongeo.io import check_image
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.texture.diffuse_over_mesh import diffuse_over_mesh
@@ -12,6 +13,7 @@ from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import FacePicture, face_picture
 from toongeo.render import Fragments, interpolate, rasterize, sample_image, uv_to_px
 
+LEAST_SIZE = 32  # texels; in a smaller atlas the eyes would be lost
 FADE_RINGS = 24  # edges over which unseen skin fades from its nearest seen colour to the mean skin colour
 OBLIQUE, FRONTAL = (
     0.15,
@@ -26,7 +28,8 @@ def bake_texture(img: np.ndarray, face: AlignedFace, *, size: int = 1024) -> np.
     Every vertex has a place in the picture (Eq. 12). What is not skin there is replaced by the breadth-first diffusion
     of the face colour (:func:`toongeo.diffuse_texture`), and the atlas is filled by rasterizing the model's triangles
     in UV. What the camera does not see, or sees at a grazing angle, takes the colours of the nearest seen skin,
-    diffused over the surface and fading to the mean skin colour; the inside of the mouth keeps the model's albedo.
+    diffused over the surface and fading to the mean skin colour. Mouth and sockets keep the model's albedo, and so does
+    the whole head where no skin is seen.
 
     Parameters
     ----------
@@ -43,12 +46,11 @@ def bake_texture(img: np.ndarray, face: AlignedFace, *, size: int = 1024) -> np.
     Raises
     ------
     ValueError
-        If the picture is not (H, W, 3) uint8, or the size not positive.
+        If the picture is not (H, W, 3) uint8, or the size is below 32.
     """
-    if not (isinstance(img, np.ndarray) and img.dtype == np.uint8 and img.ndim == 3 and img.shape[2] == 3 and img.size):
-        raise ValueError(f"img: expected (H, W, 3) uint8, got {getattr(img, 'dtype', type(img))} {np.shape(img)}")
-    if size < 1:
-        raise ValueError(f"size: expected at least 1 texel, got {size}")
+    check_image(img)
+    if size < LEAST_SIZE:
+        raise ValueError(f"size: expected at least {LEAST_SIZE} texels, got {size}")
     picture = face_picture(img, face)
     source = _face_colours(picture)
     unseen = _vertex_colours(face, picture, source)

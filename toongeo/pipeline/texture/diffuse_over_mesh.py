@@ -1,7 +1,8 @@
 """Breadth-first diffusion of colours over the vertices of a mesh."""
 
 import numpy as np
-import scipy.sparse as sp
+
+from toongeo.geometry import adjacency
 
 
 def diffuse_over_mesh(F: np.ndarray, colours: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -32,19 +33,16 @@ def diffuse_over_mesh(F: np.ndarray, colours: np.ndarray, known: np.ndarray) -> 
     >>> filled.ravel(), rings
     (array([4., 2., 3., 2.]), array([0, 0, 1, 1]))
     """
-    n = len(colours)
-    i, j = F[:, [0, 1, 2]].ravel(), F[:, [1, 2, 0]].ravel()
-    adjacency = sp.csr_array((np.ones(2 * len(i)), (np.r_[i, j], np.r_[j, i])), shape=(n, n))
-    adjacency.data[:] = 1.0  # an edge counts once, however many triangles share it
+    edges = adjacency(F, len(colours))
     filled = np.array(colours, float)
     rings = np.where(known, 0, -1)
     ring = 0
     while True:
         ring += 1
         visited = (rings >= 0).astype(float)
-        count = adjacency @ visited
+        count = edges @ visited
         frontier = np.flatnonzero((rings < 0) & (count > 0))
         if not len(frontier):
             return filled, rings
-        filled[frontier] = (adjacency[frontier] @ (filled * visited[:, None])) / count[frontier, None]
+        filled[frontier] = (edges[frontier] @ (filled * visited[:, None])) / count[frontier, None]
         rings[frontier] = ring

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS, PARTS
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.render import Fragments, rasterize
 
@@ -15,14 +16,10 @@ SPREAD = (
     13.0,
 )  # CIELAB units: least and largest distance from the skin's colour that still counts as skin
 FRONTAL = 0.2  # cosine to the viewing direction below which a surface is too oblique to be trusted
-# Upper and lower rim of each opening, as iBUG-68 points from corner to corner.
-OPENINGS = (
-    ((36, 37, 38, 39), (36, 41, 40, 39)),
-    ((42, 43, 44, 45), (42, 47, 46, 45)),
-    ((60, 61, 62, 63, 64), (60, 67, 66, 65, 64)),
-)
-BROWS = (slice(17, 22), slice(22, 27))
-EYE_RIGHT, EYE_LEFT, MOUTH = OPENINGS
+# Upper and lower rim of each opening.
+EYE_RIGHT, EYE_LEFT = ((LID_RIMS[f"lid_upper_{side}"], LID_RIMS[f"lid_lower_{side}"]) for side in ("right", "left"))
+MOUTH = LIP_RIMS["lip_upper_inner"], LIP_RIMS["lip_lower_inner"]
+OPENINGS = (EYE_RIGHT, EYE_LEFT, MOUTH)
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,7 +142,7 @@ def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> 
     width = max(3, int(0.03 * np.ptp(landmarks[:, 0])))
     corners = np.round(landmarks).astype(np.int32)
     brows: np.ndarray = np.zeros(front.shape, np.uint8)  # strokes a little thicker than a brow
-    cv2.polylines(brows, [corners[brow] for brow in BROWS], False, 1, 2 * width)
+    cv2.polylines(brows, [corners[PARTS[brow]] for brow in ("brow_right", "brow_left")], False, 1, 2 * width)
     hull = brows.copy()
     cv2.fillConvexPoly(hull, cv2.convexHull(corners), 1)
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * width + 1, 2 * width + 1))

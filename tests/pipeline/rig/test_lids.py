@@ -1,22 +1,24 @@
 import numpy as np
 import pytest
 
-from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_eyes, fit_lids
+from toongeo.pipeline import align_face, build_rig, clear_lids, close_lids, fit_3dmm, fit_eyes
 from toongeo.pipeline.align.rim_anchors import rim_path
-from toongeo.pipeline.rig.fit_lids import LIDS, _outward
+from toongeo.pipeline.rig.clear_lids import _outward
 
 
 @pytest.fixture(scope="module", params=["manga_girl", "astronaut"])
 def stages(request, cartoon):
     img, landmarks = cartoon(request.param)
     face = align_face(fit_3dmm(img, landmarks), landmarks)
-    rig, eyes = build_rig(face), fit_eyes(face)
-    return face, rig, eyes, fit_lids(face, rig, eyes)
+    transferred = build_rig(face)
+    rig = close_lids(face, transferred)
+    eyes = fit_eyes(face, rig)
+    return face, transferred, eyes, clear_lids(face, rig, eyes)
 
 
 def opening(V, model, side):
     """Largest distance, mm, from the upper rim of an eye to the curve of the lower one."""
-    upper, lower = (V[rim_path(model, rim)] for rim in LIDS[side])
+    upper, lower = (V[rim_path(model, f"lid_{lid}_{side}")] for lid in ("upper", "lower"))
     steps = np.linspace(0, 1, 20)[:, None, None]
     curve = (lower[:-1] + steps * (lower[1:] - lower[:-1])).reshape(-1, 3)
     return np.linalg.norm(upper[:, None] - curve, axis=2).min(1).max()
@@ -48,6 +50,15 @@ def test_no_lid_is_inside_an_eyeball_in_any_expression(stages):
             offset = (rig.neutral + delta)[lids] - eyes.centres[side]
             ahead = offset[:, 2] > 0
             assert np.linalg.norm(offset[ahead], axis=1).min() >= eyes.radii[side]
+
+
+@pytest.mark.parametrize("weight", [0.25, 0.5, 0.75, 1.0])
+def test_no_lid_is_inside_an_eyeball_while_it_closes(stages, weight):
+    face, _, eyes, rig = stages
+    for side, name in enumerate(("left", "right")):
+        lids = face.region(f"eyelid_upper_{name}") | face.region(f"eyelid_lower_{name}")
+        offset = rig.vertices({f"eyeBlink{name.capitalize()}": weight})[lids] - eyes.centres[side]
+        assert np.linalg.norm(offset[offset[:, 2] > 0], axis=1).min() >= eyes.radii[side]
 
 
 def test_outward_moves_to_the_surface_and_no_further(rng):
