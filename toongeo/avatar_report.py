@@ -6,7 +6,8 @@ import numpy as np
 
 from toongeo.metrics import MeshQuality, landmark_error
 from toongeo.model.ibug68 import OUTER_EYES
-from toongeo.pipeline import AlignedFace, FaceFit
+from toongeo.pipeline import AlignedFace, Eyes, FaceFit
+from toongeo.pipeline.rig.fit_eyes import SIDES
 
 FEW_INTERSECTIONS = 0.003  # of the triangles of the face; more are worth a warning
 
@@ -54,8 +55,14 @@ def landmark_errors(face: FaceFit | AlignedFace, landmarks: np.ndarray) -> dict[
     return landmark_error(found, landmarks, scale=float(np.linalg.norm(left - right)))
 
 
-def shape_warnings(quality: MeshQuality) -> list[str]:
+def shape_warnings(face: AlignedFace, eyes: Eyes, quality: MeshQuality) -> list[str]:
     """What seems wrong with the shape of a face."""
-    if quality.intersecting_fraction <= FEW_INTERSECTIONS:
-        return []
-    return [f"{100 * quality.intersecting_fraction:.1f} % of the face's triangles intersect others"]
+    warnings = []
+    if quality.intersecting_fraction > FEW_INTERSECTIONS:
+        warnings.append(f"{100 * quality.intersecting_fraction:.1f} % of the face's triangles intersect others")
+    for side, name in enumerate(SIDES):
+        skin = face.region("skin") & ~face.region(f"eye_{name}")
+        inside = np.linalg.norm(face.vertices[skin] - eyes.centres[side], axis=1) < eyes.radii[side]
+        if inside.any():
+            warnings.append(f"the {name} eyeball reaches through the skin ({inside.sum()} vertices)")
+    return warnings

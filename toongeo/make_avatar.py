@@ -20,6 +20,7 @@ from toongeo.pipeline import (
     fit_3dmm,
     fit_eyes,
 )
+from toongeo.pipeline.texture.bake_texture import check_size
 
 STAGES = ("fit", "align", "rig", "eyes", "texture", "report")
 
@@ -57,6 +58,7 @@ def make_avatar(
         If the picture is not (H, W, 3) uint8, or the landmarks cannot belong to it.
     """
     check_image(img)
+    check_size(texture_size)
     clock = _Clock(progress)
 
     clock.start("fit")
@@ -77,7 +79,7 @@ def make_avatar(
         aligned=landmark_errors(face, landmarks),
         quality=quality,
         seconds=clock.stop(),
-        warnings=(*fit.report.warnings, *shape_warnings(quality)),
+        warnings=(*fit.report.warnings, *shape_warnings(face, eyes, quality)),
     )
     return Avatar(fit=fit, face=face, rig=rig, eyes=eyes, texture=texture, report=report)
 

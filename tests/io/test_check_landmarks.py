@@ -155,3 +155,16 @@ def test_turned_heads_are_not_refused(yaw):
 def test_wrong_image_shape(face):
     with pytest.raises(ValueError, match=r"image_shape: expected \(H, W\) .* got \(0, 5\)"):
         check_landmarks(face, (0, 5))
+
+
+def test_points_of_the_midline_alone_fix_no_pose(face):
+    midline = np.full((68, 2), np.nan)
+    rows = [27, 28, 29, 30, 33, 51, 57, 62, 66, 8]
+    midline[rows] = face[rows]
+    with pytest.raises(ValueError, match="landmarks: expected a face, but all points lie on one line"):
+        check_landmarks(midline, SHAPE)
+
+
+def test_rows_of_different_lengths_are_named():
+    with pytest.raises(ValueError, match="landmarks: expected 68 rows of x and y, got rows of different lengths"):
+        check_landmarks([[1.0, 2.0]] * 67 + [[1.0]])

@@ -21,13 +21,14 @@ def make(image: Path, landmarks: Path, output: Path, texture_size: int = 1024) -
         raise ValueError(f"output: expected a name that ends in {', '.join(WRITERS)}, got {output}")
     if not output.parent.is_dir():
         raise OSError(f"output: no folder {output.parent} to write {output.name} to")
+    img, points = read_image(image), read_landmarks(landmarks)
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
         def announce(stage: str) -> None:
             bar.update(STAGES.index(stage) - bar.n)
             bar.set_description(stage)
 
-        avatar = make_avatar(read_image(image), read_landmarks(landmarks), texture_size=texture_size, progress=announce)
+        avatar = make_avatar(img, points, texture_size=texture_size, progress=announce)
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")
     avatar.save(output)

@@ -21,7 +21,7 @@ _MISFIT_DOUBTED = 0.55
 _HANDEDNESS_MARGIN = 0.1
 _ROLL_DOUBTED = 100.0  # degrees
 _SPREAD_PX = 2.0
-_FLATNESS = 0.01
+_FLATNESS = 0.1
 _FEWEST = 6
 _SHARE_OUTSIDE = 1 / 3
 
@@ -155,7 +155,7 @@ def _outside(points: NDArray[np.float64], usable: NDArray[np.int64], image_shape
     x, y = points[usable[worst]]
     outside = int(np.count_nonzero(beyond > 1))
     picture = f"the picture of {width} x {height} px"
-    farthest = f"{usable[worst]} at ({x:.1f}, {y:.1f})"
+    farthest = f"{usable[worst]} at ({x:.6g}, {y:.6g})"
     if outside > _SHARE_OUTSIDE * len(usable) or beyond[worst] > np.hypot(width, height):
         raise ValueError(
             f"landmarks: {outside} of {len(usable)} points lie outside {picture}, farthest {farthest}: "

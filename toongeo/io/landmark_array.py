@@ -17,7 +17,10 @@ _SCHEMES = {
 
 def landmark_array(landmarks: ArrayLike, name: str = "landmarks") -> NDArray[np.float64]:
     """Checked copy: (68, 2) float64, finite or NaN in whole rows, at least one row not NaN."""
-    points = np.asarray(landmarks)
+    try:
+        points = np.asarray(landmarks)
+    except ValueError:
+        raise ValueError(f"{name}: expected 68 rows of x and y, got rows of different lengths") from None
     if points.dtype.kind not in "iuf":
         raise ValueError(f"{name}: expected numbers, got an array of {points.dtype}")
     if points.ndim == 2 and points.shape[1] == 2 and len(points) != 68:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from toongeo._read_only import read_only
+from toongeo.geometry.one_thread import one_thread
 from toongeo.model.eyeball_template import EyeballTemplate
 
 
@@ -79,7 +80,8 @@ class MorphableModel:
             c = np.asarray(coefficients, float)
             if c.shape != (len(modes),):
                 raise ValueError(f"{name}: expected shape ({len(modes)},), got {c.shape}")
-            V += (c.astype(np.float32) @ modes.reshape(len(modes), -1)).reshape(-1, 3)
+            with one_thread():  # how BLAS splits a sum among threads would show in the last digits
+                V += (c.astype(np.float32) @ modes.reshape(len(modes), -1)).reshape(-1, 3)
         return V
 
     def region(self, name: str) -> np.ndarray:

@@ -119,5 +119,6 @@ def test_opening_mask_of_a_square_diamond():
 def test_bad_arguments_are_named(face, img):
     with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8 RGB, got float64"):
         bake_texture(img / 255.0, face)
-    with pytest.raises(ValueError, match="size: expected at least 32 texels, got 31"):
-        bake_texture(img, face, size=31)
+    for size in (31, 8193, 64.0, "64"):
+        with pytest.raises(ValueError, match=rf"size: expected an integer from 32 to 8192 texels, got {size!r}"):
+            bake_texture(img, face, size=size)

@@ -8,6 +8,7 @@ import numpy as np
 
 from toongeo._read_only import read_only
 from toongeo.geometry import DeformationTransfer
+from toongeo.geometry.one_thread import one_thread
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.weight_vector import weight_vector
@@ -48,7 +49,8 @@ class Rig:
         """
         beta = weight_vector(weights, self.names)
         active = np.flatnonzero(beta)
-        moved = np.tensordot(beta[active].astype(np.float32), self.deltas[active], 1)
+        with one_thread():
+            moved = np.tensordot(beta[active].astype(np.float32), self.deltas[active], 1)
         return self.neutral + moved
 
 

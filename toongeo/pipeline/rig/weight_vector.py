@@ -1,6 +1,7 @@
 """Expression weights as a checked vector."""
 
 import difflib
+import numbers
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -35,10 +36,12 @@ def weight_vector(weights: Mapping[str, float] | np.ndarray | None, names: Seque
         beta = np.zeros(len(names))
         for name, weight in weights.items():
             if name not in names:
-                near = difflib.get_close_matches(name, names, n=3, cutoff=0.4)
+                near = difflib.get_close_matches(str(name), names, n=3, cutoff=0.4)
                 hint = f"; did you mean {', '.join(near)}?" if near else ""
                 raise ValueError(f"weights: no expression {name!r}{hint}")
-            beta[names.index(name)] = weight
+            if not isinstance(weight, numbers.Real):
+                raise ValueError(f"weights: expected a number for {name}, got {weight!r}")
+            beta[names.index(name)] = float(weight)
     else:
         beta = np.asarray(weights, float)
         if beta.shape != (len(names),):

@@ -13,7 +13,7 @@ from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import FacePicture, face_picture
 from toongeo.render import Fragments, interpolate, rasterize, sample_image, uv_to_px
 
-LEAST_SIZE = 32  # texels; in a smaller atlas the eyes would be lost
+SIZES = (32, 8192)  # texels; in a smaller atlas the eyes would be lost, a larger one takes gigabytes
 FADE_RINGS = 24  # edges over which unseen skin fades from its nearest seen colour to the mean skin colour
 OBLIQUE, FRONTAL = (
     0.15,
@@ -46,11 +46,10 @@ def bake_texture(img: np.ndarray, face: AlignedFace, *, size: int = 1024) -> np.
     Raises
     ------
     ValueError
-        If the picture is not (H, W, 3) uint8, or the size is below 32.
+        If the picture is not (H, W, 3) uint8, or the size no integer from 32 to 8192.
     """
     check_image(img)
-    if size < LEAST_SIZE:
-        raise ValueError(f"size: expected at least {LEAST_SIZE} texels, got {size}")
+    check_size(size)
     picture = face_picture(img, face)
     source = _face_colours(picture)
     unseen = _vertex_colours(face, picture, source)
@@ -66,6 +65,12 @@ def bake_texture(img: np.ndarray, face: AlignedFace, *, size: int = 1024) -> np.
     image = np.zeros((size, size, 3), np.uint8)
     image[rows, columns] = np.clip(np.rint(trust * seen + (1 - trust) * fill), 0, 255)
     return diffuse_texture(image, atlas.mask)
+
+
+def check_size(size: int) -> None:
+    """Refuse an atlas that is too small, too large, or no integer."""
+    if not (isinstance(size, int | np.integer) and SIZES[0] <= size <= SIZES[1]):
+        raise ValueError(f"size: expected an integer from {SIZES[0]} to {SIZES[1]} texels, got {size!r}")
 
 
 def _face_colours(picture: FacePicture) -> np.ndarray:

@@ -20,6 +20,8 @@ FRONTAL = 0.2  # cosine to the viewing direction below which a surface is too ob
 EYE_RIGHT, EYE_LEFT = ((LID_RIMS[f"lid_upper_{side}"], LID_RIMS[f"lid_lower_{side}"]) for side in ("right", "left"))
 MOUTH = LIP_RIMS["lip_upper_inner"], LIP_RIMS["lip_lower_inner"]
 OPENINGS = (EYE_RIGHT, EYE_LEFT, MOUTH)
+# Chin, nose, eye and mouth corners: within their hull there is no hair.
+CORE = np.r_[PARTS["jaw"][4:13], PARTS["nose"], 36, 39, 42, 45, 48, 54]
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,40 +124,48 @@ def _front_pixels(face: AlignedFace, fragments: Fragments, cosines: np.ndarray) 
     return fragments.mask & wanted[fragments.face_ids]
 
 
-def _skin_colour_distance(crop: np.ndarray, inner: np.ndarray, blur: float) -> tuple[np.ndarray, float]:
-    """Distance (h, w) of each pixel to the colour of the skin, and the distance within which it may be skin.
-
-    CIELAB with halved lightness, because shading changes lightness more than hue.
-    """
-    lab = cv2.cvtColor(cv2.GaussianBlur(crop, (0, 0), blur), cv2.COLOR_RGB2LAB).astype(np.float32)
-    lab[..., 0] *= 0.5
-    distance = np.linalg.norm(lab - np.median(lab[inner], axis=0), axis=2)
-    return distance, float(np.clip(2.5 * np.median(distance[inner]), *SPREAD))
+def _skin_tones(lab: np.ndarray, core: np.ndarray) -> np.ndarray:
+    """Colours (4, 3) of skin from shadow to light: the mean about each of four levels of lightness in the core."""
+    pixels = lab[core]
+    pixels = pixels[np.argsort(pixels[:, 0], kind="stable")]
+    band = max(1, len(pixels) // 10)
+    middles = (np.array([0.125, 0.375, 0.625, 0.875]) * len(pixels)).astype(int)
+    return np.array([pixels[max(0, middle - band) : middle + band].mean(0) for middle in middles])
 
 
 def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Front pixels that show the face, and among them those that surely have the colour of its skin.
 
     Within the landmarks' hull everything is the face (brows, shadows, outlines) but for broad areas of another colour
-    that reach in from outside, which are hair. Beyond the hull only the colour decides.
+    that reach in from outside, which are hair; between eyes, nose, mouth and chin there is none. Skin may be lit from
+    one side, so within the hull its colour is any of several tones; beyond the hull only the middle one counts.
     """
     width = max(3, int(0.03 * np.ptp(landmarks[:, 0])))
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * width + 1, 2 * width + 1))
     corners = np.round(landmarks).astype(np.int32)
     brows: np.ndarray = np.zeros(front.shape, np.uint8)  # strokes a little thicker than a brow
     cv2.polylines(brows, [corners[PARTS[brow]] for brow in ("brow_right", "brow_left")], False, 1, 2 * width)
-    hull = brows.copy()
+    hull, core = brows.copy(), np.zeros_like(brows)
     cv2.fillConvexPoly(hull, cv2.convexHull(corners), 1)
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * width + 1, 2 * width + 1))
+    cv2.fillConvexPoly(core, cv2.convexHull(corners[CORE]), 1)
     # What lies beyond the picture is unknown, so its edge erodes too.
     eroded = cv2.erode(hull, disc, borderType=cv2.BORDER_CONSTANT, borderValue=0)
-    inner = (eroded | brows).astype(bool) & front
-    if not inner.any():
+    inner, core = (eroded | brows).astype(bool) & front, core.astype(bool) & front
+    if not core.any():
         return front, front
-    distance, spread = _skin_colour_distance(crop, inner, 0.3 * width)
+
+    lab = cv2.cvtColor(cv2.GaussianBlur(crop, (0, 0), 0.3 * width), cv2.COLOR_RGB2LAB).astype(np.float32)
+    lab[..., 0] *= 0.5  # shading changes lightness more than hue
+    middle = np.linalg.norm(lab - np.median(lab[core], axis=0), axis=2)
+    distance = middle.copy()
+    for tone in _skin_tones(lab, core):
+        distance = np.where(hull > 0, np.minimum(distance, np.linalg.norm(lab - tone, axis=2)), distance)
+    spread = float(np.clip(2.5 * np.median(middle[inner]), *SPREAD))
+
     broad = cv2.morphologyEx((front & (distance > spread)).astype(np.uint8), cv2.MORPH_OPEN, disc)
     _, labels = cv2.connectedComponents(broad)
     reaching = np.setdiff1d(np.unique(labels[(hull == 0) & (broad > 0)]), 0)
     hair = cv2.dilate(np.isin(labels, reaching).astype(np.uint8), disc[::2, ::2]).astype(bool)
+    hair &= ~(brows.astype(bool) | core)
     likely = cv2.erode((front & (distance < spread)).astype(np.uint8), disc[::2, ::2]).astype(bool)
-    hair &= ~brows.astype(bool)
     return (inner | likely) & ~hair, likely & ~hair
