@@ -71,7 +71,7 @@ def make_avatar(
     eyes = fit_eyes(face, rig)
     rig = clear_lids(face, rig, eyes)
     clock.start("texture")
-    texture = bake_eyes(img, face, eyes, bake_texture(img, face, size=texture_size))
+    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size))
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(

@@ -4,7 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_eyes
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
-from toongeo.pipeline.rig.fit_eyes import _inset, _robust_sphere
+from toongeo.pipeline.rig.fit_eyes import _inset, _radius_within, _robust_sphere
 
 
 def test_sphere_through_exact_points_is_found(rng):
@@ -36,6 +36,15 @@ def test_inset_brings_the_deepest_point_to_the_surface(rng):
     assert inset > 0
     assert distance.min() == pytest.approx(10.0, rel=1e-12)
     assert _inset(points + [0, 0, 100], 10.0) == 0
+
+
+def test_the_eyeball_shrinks_to_stay_within_the_head(rng):
+    assert _radius_within(np.array([[12.0, 0, 0], [0, 0, 20]]), 10.0) == 10.0
+    points = rng.normal(size=(50, 3)) * 6 + [0, 0, -6]
+    points = points[np.linalg.norm(points - [0, 0, 10], axis=1) > 6]
+    radius = _radius_within(points, 10.0)
+    distance = np.linalg.norm(points - [0, 0, 10 - radius], axis=1)
+    assert radius == 8.0 or distance.min() == pytest.approx(radius, rel=1e-12)
 
 
 def test_no_lid_touches_the_eyeball_of_the_neutral_face(avatar):

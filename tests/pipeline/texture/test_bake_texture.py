@@ -6,6 +6,7 @@ import pytest
 
 from toongeo.model.ibug68 import MIRROR
 from toongeo.pipeline import align_face, bake_texture, fit_3dmm
+from toongeo.pipeline.rig.build_rig import Rig
 from toongeo.pipeline.texture.bake_texture import _atlas_fragments
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, MAX_SIDE, OPENINGS, face_picture, opening_mask
 from toongeo.render import ScaledOrthographicCamera, sample_image, uv_to_px
@@ -114,6 +115,28 @@ def test_opening_mask_of_a_square_diamond():
     np.testing.assert_array_equal(mask, mask[::-1])
     assert (mask != mask[:, ::-1]).sum() <= 4  # ties of the polygon filler
     assert mask[10, 11] and not mask[2, 2] and 120 < mask.sum() < 220
+
+
+def test_skin_that_an_expression_stretches_takes_no_drawing(face, img):
+    """An expression that does nothing changes no texel; one that blows up the cheek takes the drawing off it."""
+    model = face.model
+    still = Rig(("still",), face.vertices, np.zeros((1, *face.vertices.shape), np.float32), {"seconds": 0.0})
+    plain = bake_texture(img, face, size=256)
+    np.testing.assert_array_equal(bake_texture(img, face, rig=still, size=256), plain)
+    lips = model.region("lips")
+    delta = np.where(lips[:, None], 3 * (face.vertices - face.vertices[lips].mean(0)), 0).astype(np.float32)
+    blown = bake_texture(img, face, rig=dataclasses.replace(still, deltas=delta[None]), size=256)
+    fragments = _atlas_fragments(model, 256)
+    on_lips = fragments.mask & lips[face.faces].all(1)[fragments.face_ids]
+    assert np.abs(blown[on_lips].astype(int) - plain[on_lips]).mean() > 5
+    away = fragments.mask & ~model.region("mouth")[face.faces].any(1)[fragments.face_ids]
+    np.testing.assert_array_equal(blown[away], plain[away])
+
+
+def test_a_grey_picture_gives_a_grey_head(face, img):
+    grey = np.repeat(cv2.cvtColor(img, cv2.COLOR_RGB2GRAY)[..., None], 3, axis=2)
+    atlas = bake_texture(grey, face, size=256).astype(int)
+    assert np.ptp(atlas, axis=2).max() <= 1
 
 
 def test_bad_arguments_are_named(face, img):

@@ -19,6 +19,7 @@ CLEARANCE = 0.01  # of the radius: how far lids stay off the eyeball
 # Of the radius: s.d. of centre and radius about the template's eyeball, carried along with the lids.
 PRIOR = np.array([0.15, 0.15, 0.15, 0.03])
 BLINK_WEIGHTS = np.array([0.0, 0.25, 0.5, 0.75])  # at 1 the lids are put onto the eyeball
+LEAST_RADIUS = 0.8  # of the fitted radius: how far an eyeball shrinks at most to stay within a narrow head
 RIM = 0.04  # of the radius: s.d. of the lid rim about the sphere
 HUBER = 2.0  # s.d. beyond which a rim vertex pulls with constant force
 
@@ -59,9 +60,9 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
     """A sphere for each socket, moved in until no lid touches it (Pan et al. 2024, section 4.3).
 
     The template's eyeball is carried along by the similarity that best explains how the rim of the lids moved, refined
-    by a robust fit of the sphere to that rim, and then moved back along the resting gaze until every lid vertex is
-    outside: in the neutral face, and all the way while the eye closes. A blendshape moves lids on straight lines,
-    which cut the corner that a real lid goes around.
+    by a robust fit of the sphere to that rim, and made smaller where it would come out at the temple. It is then moved
+    back along the resting gaze until every lid vertex is outside: in the neutral face, and all the way while the eye
+    closes. A blendshape moves lids on straight lines, which cut the corner that a real lid goes around.
 
     Parameters
     ----------
@@ -83,6 +84,9 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
         ratios = np.linalg.norm(coarse - centre, axis=1) / radius
         scale, rotation, shift = similarity(coarse, face.vertices[rim])
         centre, radius = _robust_sphere(face.vertices[rim], ratios, scale * rotation @ centre + shift, scale * radius)
+        around = face.vertices[model.region("skin") & ~model.region(f"eye_{name}")]
+        radius, shrunk_from = _radius_within(around - centre, radius), radius
+        centre = centre + (shrunk_from - radius) * GAZE
         lids = np.flatnonzero(model.region(f"eyelid_upper_{name}") | model.region(f"eyelid_lower_{name}"))
         lids = np.union1d(lids, rim)
         blink = rig.deltas[rig.names.index(f"eyeBlink{name.capitalize()}"), lids]
@@ -114,6 +118,19 @@ def _robust_sphere(
         H = J.T @ (weight[:, None] * J) + np.diag(precision)
         x = x - np.linalg.solve(H, J.T @ (weight * residual) + precision * (x - start))
     return x[:3], float(x[3])
+
+
+def _radius_within(points: np.ndarray, radius: float) -> float:
+    """Radius of the largest sphere, at most ``radius``, that leaves points (k, 3) outside and keeps its front.
+
+    The given sphere is about the origin; all spheres considered touch it at the front pole. With p seen from there,
+    p is outside a sphere of radius r if |p|^2 + 2 r p.GAZE >= 0.
+    """
+    from_pole = points - radius * GAZE
+    ahead = from_pole @ GAZE
+    behind = ahead < 0
+    limits = (from_pole[behind] ** 2).sum(1) / (-2 * ahead[behind])
+    return float(max(LEAST_RADIUS * radius, min(radius, limits.min(initial=np.inf))))
 
 
 def _inset(points: np.ndarray, radius: float) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 from toongeo.io import check_image
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.rig.build_rig import Rig
 from toongeo.pipeline.texture.diffuse_over_mesh import diffuse_over_mesh
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import FacePicture, face_picture
@@ -19,10 +20,12 @@ OBLIQUE, FRONTAL = (
     0.15,
     0.45,
 )  # cosines to the viewer between which a texel's trust in the picture grows from 0 to 1
+# By how much an expression may enlarge a triangle: up to the first, its drawing stays; from the second, none of it.
+STRETCH = (2.0, 5.0)
 HIDDEN_MM = 3.0  # how far behind the visible surface a texel may lie and still be taken as seen
 
 
-def bake_texture(img: np.ndarray, face: AlignedFace, *, size: int = 1024) -> np.ndarray:
+def bake_texture(img: np.ndarray, face: AlignedFace, *, rig: Rig | None = None, size: int = 1024) -> np.ndarray:
     """Texture atlas of a face, taken from the picture (Pan et al. 2024, section 3.2.3).
 
     Every vertex has a place in the picture (Eq. 12). What is not skin there is replaced by the breadth-first diffusion
@@ -35,6 +38,9 @@ def bake_texture(img: np.ndarray, face: AlignedFace, *, size: int = 1024) -> np.
     ----------
     img : (H, W, 3) uint8 RGB
     face : AlignedFace
+    rig : Rig, optional
+        Skin that its expressions stretch manyfold, such as the narrow strip of a lid that is open in the picture, takes
+        the diffused colour too: a drawn lash there would be smeared over the closed eye.
     size : int
         Side of the atlas in texels.
 
@@ -61,6 +67,8 @@ def bake_texture(img: np.ndarray, face: AlignedFace, *, size: int = 1024) -> np.
     fill = _mix(unseen, corners, weights)
     px = _mix(picture.points, corners, weights)
     trust = _trust(face, picture, corners, weights, px)
+    if rig is not None:
+        trust *= _mix(_calm(face, rig)[:, None], corners, weights)
     seen = sample_image(source, px)
     image = np.zeros((size, size, 3), np.uint8)
     image[rows, columns] = np.clip(np.rint(trust * seen + (1 - trust) * fill), 0, 255)
@@ -117,12 +125,21 @@ def _vertex_colours(face: AlignedFace, picture: FacePicture, source: np.ndarray)
         colours[seen & ~model.region("lips")] if (seen & ~model.region("lips")).any() else colours[seen],
         axis=0,
     )
+    model_skin = 255.0 * model.albedo_mean[model.region("face")].mean(0)
+    colours[~outside] = _muted(colours[~outside], model_skin, skin)
     joined = outside[model.faces].all(1)
     filled, rings = diffuse_over_mesh(model.faces[joined], colours, seen)
     fade = np.clip(rings / FADE_RINGS, 0, 1)[:, None]
     reached = outside & (rings >= 0)
     colours[reached] = ((1 - fade) * filled + fade * skin)[reached]
     return colours
+
+
+def _muted(colours: np.ndarray, model_skin: np.ndarray, skin: np.ndarray) -> np.ndarray:
+    """Colours (k, 3) of the model with as little chroma as the picture's skin has: a grey portrait has a grey mouth."""
+    chroma = min(1.0, np.ptp(skin) / max(np.ptp(model_skin), 1.0))
+    grey = colours.mean(1, keepdims=True)
+    return grey + chroma * (colours - grey)
 
 
 def _trust(
@@ -144,3 +161,18 @@ def _trust(
     rim = np.clip(2 * sample_image(soft[..., None], px)[:, 0] - 1, 0, 1)
     frontal = np.einsum("kc,kc->k", weights, ramp[corners])
     return (frontal * unhidden * inside * rim)[:, None]
+
+
+def _calm(face: AlignedFace, rig: Rig) -> np.ndarray:
+    """1 (n,) where no expression stretches the skin much, 0 where one enlarges a triangle manyfold."""
+    triangles = face.faces[face.region("face")[face.faces].all(1)]
+
+    def areas(V: np.ndarray) -> np.ndarray:
+        a, b, c = V[triangles.T]
+        return np.linalg.norm(np.cross(b - a, c - a), axis=1)
+
+    neutral = np.maximum(areas(rig.neutral), 1e-9)
+    growth = np.max([areas(rig.neutral + delta) for delta in rig.deltas], axis=0) / neutral
+    stretch = np.ones(len(rig.neutral))
+    np.maximum.at(stretch, triangles.ravel(), growth.repeat(3))
+    return 1 - np.clip((stretch - STRETCH[0]) / (STRETCH[1] - STRETCH[0]), 0, 1)
