@@ -42,6 +42,8 @@ class FitReport:
     warnings : tuple of str
         What seems odd about the landmarks, from `toongeo.io.check_landmarks`.
     seconds : float
+    outliers : tuple of int
+        Landmarks that the robust kernel has all but ignored (weight below 0.1).
     """
 
     algorithm: str
@@ -56,6 +58,7 @@ class FitReport:
     rms_percent: float
     warnings: tuple[str, ...]
     seconds: float
+    outliers: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

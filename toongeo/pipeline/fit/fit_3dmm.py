@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,7 @@ from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
-from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
@@ -30,6 +31,7 @@ def fit_3dmm(
     model: MorphableModel | None = None,
     algorithm: str = "LD_LBFGS",
     options: FitOptions | None = None,
+    **changes: Any,
 ) -> FaceFit:
     """Pose, identity and expression of a morphable model from 68 landmarks.
 
@@ -55,6 +57,8 @@ def fit_3dmm(
         size.
     options : FitOptions, optional
         Weights and limits.
+    **changes
+        Fields of `FitOptions` that differ from ``options``, as in ``fit_3dmm(img, points, robust=None)``.
 
     Returns
     -------
@@ -85,7 +89,7 @@ def fit_3dmm(
     True
     """
     started = time.perf_counter()
-    options = FitOptions() if options is None else options
+    options = changed_options(options, changes)
     model = default_model() if model is None else model
     if algorithm not in known_algorithms():
         raise ValueError(f"algorithm: no algorithm {algorithm!r}; known: {', '.join(known_algorithms())}")
@@ -114,6 +118,7 @@ def fit_3dmm(
             rms_percent=100 * rms_px / outer_eye_px,
             warnings=tuple(warnings),
             seconds=time.perf_counter() - started,
+            outliers=solution.outliers,
         ),
     )
 

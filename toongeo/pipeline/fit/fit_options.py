@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
-__all__ = ["FitOptions"]
+from toongeo.pipeline.fit.robust_weights import KERNELS
+
+__all__ = ["FitOptions", "changed_options"]
 
 
 _MAY_BE_ZERO = ("jaw_weight", "jaw_tangent")
+_NUMBERS = (
+    "landmark_weight", "prior_weight", "identity_weight", "expression_weight", "jaw_weight", "jaw_tangent",
+    "max_deviation", "max_passes", "tolerance", "max_evaluations",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -38,12 +46,15 @@ class FitOptions:
         Relative change of the loss at which a pass stops.
     max_evaluations : int
         Of the loss, in one pass.
+    robust : {"geman-mcclure", "huber"} or None
+        Kernel of the landmark errors, as wide as their median asks: between the passes a point that lies far
+        off beside the others loses weight. None is least squares.
 
     Raises
     ------
     ValueError
         If a jaw weight is negative, another weight or a limit not positive, or one of them not finite. Without its
-        prior the fit has no unique answer.
+        prior the fit has no unique answer. If a name is not known.
     """
 
     landmark_weight: float = 1.0
@@ -56,15 +67,31 @@ class FitOptions:
     max_passes: int = 4
     tolerance: float = 1e-7
     max_evaluations: int = 2000
+    robust: str | None = "geman-mcclure"
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            counted = field.name in ("max_passes", "max_evaluations")
+        for name in _NUMBERS:
+            value = getattr(self, name)
+            counted = name in ("max_passes", "max_evaluations")
             if counted and not (isinstance(value, int) and value >= 1):
-                raise ValueError(f"{field.name}: expected an integer >= 1, got {value!r}")
-            if not (np.isfinite(value) and (value >= 0 if field.name in _MAY_BE_ZERO else value > 0)):
-                wanted = "a finite number >= 0" if field.name in _MAY_BE_ZERO else "a finite number > 0"
-                raise ValueError(f"{field.name}: expected {wanted}, got {value!r}")
+                raise ValueError(f"{name}: expected an integer >= 1, got {value!r}")
+            if not (np.isfinite(value) and (value >= 0 if name in _MAY_BE_ZERO else value > 0)):
+                wanted = "a finite number >= 0" if name in _MAY_BE_ZERO else "a finite number > 0"
+                raise ValueError(f"{name}: expected {wanted}, got {value!r}")
+        _known("robust", self.robust, (None, *KERNELS))
         if self.jaw_tangent > 1:
             raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")
+
+
+def _known(name: str, value: object, known: tuple[object, ...]) -> None:
+    if value not in known:
+        raise ValueError(f"{name}: expected one of {', '.join(map(repr, known))}, got {value!r}")
+
+
+def changed_options(options: FitOptions | None, changes: Mapping[str, Any]) -> FitOptions:
+    """``options``, or the defaults if None, with some fields changed; an unknown field lists the known ones."""
+    known = [field.name for field in fields(FitOptions)]
+    for name in changes:
+        if name not in known:
+            raise TypeError(f"{name}: no such option; known: {', '.join(known)}")
+    return replace(FitOptions() if options is None else options, **changes)

@@ -15,7 +15,10 @@ from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.outlier_errors import NEIGHBOURS, outlier_errors
 from toongeo.pipeline.fit.prior_loss import PriorLoss
+from toongeo.pipeline.fit.robust_weights import robust_weights
+from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.pipeline.fit.total_loss import TotalLoss
 from toongeo.pipeline.fit.unknowns import Unknowns
 from toongeo.render.camera import ScaledOrthographicCamera
@@ -26,6 +29,8 @@ Floats = NDArray[np.float64]
 
 _FEWEST = 6  # points from which the affine camera of the first pose is overdetermined
 # Box of the pose: a quarter turn from the first one, in each direction four times as large, 200 mm away.
+# Robust weights that change by less are settled; a point with less weight than _DISTRUST is an outlier.
+_SETTLED, _DISTRUST, _POSING_PASSES = 0.05, 0.1, 4
 _TURN, _LOG_SCALE, _SHIFT_MM = np.pi / 2, np.log(4.0), 200.0
 
 
@@ -43,6 +48,7 @@ class Solution:
     status: str
     passes: int
     evaluations: int
+    outliers: tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +69,8 @@ class LandmarkFit:
     prior : PriorLoss
     bounds : two (n,) arrays
     options : FitOptions
+    trust : (k,) float
+        Robust weights with which the first pass begins.
     """
 
     unknowns: Unknowns
@@ -74,6 +82,7 @@ class LandmarkFit:
     prior: PriorLoss
     bounds: tuple[Floats, Floats]
     options: FitOptions
+    trust: Floats
 
     @classmethod
     def of(cls, model: MorphableModel, pixels: Floats, options: FitOptions) -> LandmarkFit:
@@ -84,7 +93,10 @@ class LandmarkFit:
         # The jaw's vertices depend on the pose, so the first pose leaves the jaw out while enough is left.
         posing = np.intersect1d(seen, INNER)
         posing = posing if len(posing) >= _FEWEST else seen
-        frame = canonical_frame(basis.at(basis.landmarks[posing])[0], pixels[posing])
+        trusted = _posing_trust(basis.at(basis.landmarks[posing])[0], pixels[posing], options)
+        frame = canonical_frame(basis.at(basis.landmarks[posing])[0], pixels[posing], trusted)
+        trust = np.ones(68)
+        trust[posing] = trusted
         points = np.full((68, 2), np.nan)
         points[seen] = frame.from_pixels(pixels[seen])
         return cls(
@@ -97,6 +109,7 @@ class LandmarkFit:
             prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight),
             bounds=_bounds(model, unknowns, options.max_deviation),
             options=options,
+            trust=trust[seen],
         )
 
     def solve(self, algorithm: str) -> Solution:
@@ -104,13 +117,15 @@ class LandmarkFit:
 
         The prior assumes a landmark variance. What the first pass could not explain to that accuracy is a face
         outside the model, and its misfit is the better estimate of the variance: the prior then counts the more.
+        A few points that lie far off beside the others are no face outside the model: they lose their weight, in
+        the misfit and in the next pass.
         """
         x = np.zeros(self.unknowns.size)
         placed = self._visible(x)
         passes = evaluations = 0
-        prior_weight = self.options.prior_weight
+        prior_weight, trust = self.options.prior_weight, self.trust
         while passes < self.options.max_passes:
-            loss = self.loss(placed, prior_weight)
+            loss = self.loss(placed, prior_weight, trust)
             minimum = nlopt_minimize(
                 loss,
                 x,
@@ -123,9 +138,12 @@ class LandmarkFit:
             x = minimum.x
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
             before, placed = placed, self._visible(x)
+            trusted, trust = trust, self._trusted(loss.landmark.residuals(x))
             if passes == 1:
-                prior_weight *= max(1.0, loss.landmark(x)[0] / (prior_weight * len(placed)))
-            if np.array_equal(before, placed) and prior_weight == loss.prior_weight:
+                misfit = self.loss(before, prior_weight, trust).landmark(x)[0]
+                prior_weight *= max(1.0, misfit / (prior_weight * len(placed)))
+            settled = np.abs(trust - trusted).max() <= _SETTLED
+            if np.array_equal(before, placed) and prior_weight == loss.prior_weight and settled:
                 break
         return Solution(
             coefficients=x[self.unknowns.shape],
@@ -138,15 +156,16 @@ class LandmarkFit:
             status=minimum.status,
             passes=passes,
             evaluations=evaluations,
+            outliers=tuple(int(k) for k in self.seen[trusted < _DISTRUST]),
         )
 
-    def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float) -> TotalLoss:
-        """Eq. 3 with the landmarks (68,) at these vertices and this ``w_r``."""
+    def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float, trust: Floats | None = None) -> TotalLoss:
+        """Eq. 3 with the landmarks (68,) at these vertices, this ``w_r``, and robust weights (k,)."""
         mean, modes = self.basis.at(landmark_vertices[self.seen])
         landmark = LandmarkLoss(
             unknowns=self.unknowns,
             points=self.points,
-            weights=self.weights,
+            weights=self.weights if trust is None else trust[:, None, None] * self.weights,
             count=len(landmark_vertices),
             mean=mean,
             modes=modes,
@@ -154,8 +173,27 @@ class LandmarkFit:
         )
         return TotalLoss(landmark, self.prior, self.options.landmark_weight, prior_weight)
 
+    def _trusted(self, residuals: Floats) -> Floats:
+        """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
+        importance = np.linalg.norm(self.weights, ord=2, axis=(1, 2)) * self.basis.outer_eye_mm**2
+        reasons = outlier_errors(residuals, NEIGHBOURS[np.ix_(self.seen, self.seen)])
+        costs = np.einsum("cki,kij,ckj->ck", reasons, self.weights, reasons).min(axis=0)
+        squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
+        return robust_weights(squares, self.options.robust, 68 * self.options.prior_weight)
+
     def _visible(self, x: Floats) -> NDArray[np.int64]:
         return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
+
+
+def _posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats:
+    """Robust weights (k,) of the points that fix the first pose, from the misfit of the mean face."""
+    trust = np.ones(len(points))
+    for _ in range(_POSING_PASSES if options.robust else 0):
+        scale, rotation, translation = scaled_orthographic_pose(points, pixels, trust)
+        camera = ScaledOrthographicCamera(scale, rotation, translation)
+        squares = ((camera.project(points) - pixels) ** 2).sum(axis=1)
+        trust = robust_weights(squares, options.robust, 0.0)
+    return trust
 
 
 def _weights(points: Floats, options: FitOptions) -> Floats:
