@@ -36,6 +36,7 @@ __getattr__, __dir__, __all__ = attach(
         "fit_3dmm": "pipeline",
         "FaceFit": "pipeline",
         "FitOptions": "pipeline",
+        "adjust_coefficients": "pipeline",
         "align_face": "pipeline",
         "AlignedFace": "pipeline",
         "diffuse_texture": "pipeline",

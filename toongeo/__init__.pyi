@@ -16,6 +16,7 @@ from toongeo.pipeline import Eyes as Eyes
 from toongeo.pipeline import FaceFit as FaceFit
 from toongeo.pipeline import FitOptions as FitOptions
 from toongeo.pipeline import Rig as Rig
+from toongeo.pipeline import adjust_coefficients as adjust_coefficients
 from toongeo.pipeline import align_face as align_face
 from toongeo.pipeline import bake_eyes as bake_eyes
 from toongeo.pipeline import bake_texture as bake_texture

@@ -26,3 +26,11 @@ class Camera(Protocol):
     def unproject(self, pixels: np.ndarray, depth: np.ndarray) -> np.ndarray:
         """Model-frame points (k, 3) whose pixels (k, 2) and depth (k,) are given; inverse of project and depth."""
         ...
+
+
+class DifferentiableCamera(Camera, Protocol):
+    """A camera that a fit can follow."""
+
+    def jacobian(self, points: np.ndarray) -> np.ndarray:
+        """Derivative (k, 2, 3), px/mm, of the pixels by model-frame points (k, 3)."""
+        ...

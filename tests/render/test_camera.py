@@ -35,6 +35,13 @@ def test_view_is_rigid_and_holds_depth(camera):
     np.testing.assert_allclose(np.linalg.norm(seen, axis=1), np.linalg.norm(V, axis=1), rtol=1e-13)
 
 
+def test_jacobian_is_the_derivative_of_the_pixels(camera):
+    V = points()
+    for k, step in enumerate(1e-3 * np.eye(3)):
+        difference = (camera.project(V + step) - camera.project(V - step)) / 2e-3
+        np.testing.assert_allclose(camera.jacobian(V)[:, :, k], difference, atol=1e-8)
+
+
 def test_rotating_the_mesh_equals_rotating_the_camera(camera):
     turn = ScaledOrthographicCamera.look(10.0, 20.0, 30.0).rotation
     composed = ScaledOrthographicCamera(camera.scale, camera.rotation @ turn, camera.translation)

@@ -1,6 +1,7 @@
 """The way of the data, a stage a folder: fit, align, texture, rig."""
 
 from toongeo.pipeline.align.align_face import AlignedFace, align_face
+from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
@@ -18,6 +19,7 @@ __all__ = [
     "FaceFit",
     "FitOptions",
     "Rig",
+    "adjust_coefficients",
     "align_face",
     "bake_eyes",
     "bake_texture",

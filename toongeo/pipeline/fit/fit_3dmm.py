@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_landmarks import check_landmarks
 from toongeo.model.default_model import default_model
-from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
-from toongeo.pipeline.fit.landmark_basis import LandmarkBasis
-from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
+from toongeo.pipeline.fit.inner_error import inner_error
+from toongeo.pipeline.fit.landmark_fit import LandmarkFit
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
 
 __all__ = ["fit_3dmm"]
@@ -98,8 +98,10 @@ def fit_3dmm(
     with one_thread():
         problem = LandmarkFit.of(model, pixels, options)
         solution = problem.solve(algorithm)
-        rms_px, outer_eye_px = _inner_error(problem.basis, solution, pixels)
-    return FaceFit(
+        mean, modes = problem.basis.at(solution.landmark_vertices)
+        fitted = solution.camera.project(mean + (modes @ solution.coefficients).reshape(-1, 3))
+        rms_px, outer_eye_px = inner_error(fitted, pixels)
+    fit = FaceFit(
         identity=solution.coefficients[problem.unknowns.identity],
         expression=solution.coefficients[problem.unknowns.expression],
         camera=solution.camera,
@@ -121,6 +123,12 @@ def fit_3dmm(
             outliers=solution.outliers,
         ),
     )
+    if options.adjust is None:
+        return fit
+    with one_thread():
+        return adjust_coefficients(
+            fit, pixels, options.adjust, algorithm=algorithm, max_evaluations=options.max_evaluations
+        )
 
 
 def _image_shape(img: NDArray[np.uint8] | None) -> tuple[int, ...] | None:
@@ -130,14 +138,3 @@ def _image_shape(img: NDArray[np.uint8] | None) -> tuple[int, ...] | None:
     if len(shape) != 3 or shape[2] != 3 or min(shape) < 1:
         raise ValueError(f"img: expected shape (H, W, 3) with H, W >= 1, got {shape}")
     return shape
-
-
-def _inner_error(basis: LandmarkBasis, solution: Solution, pixels: Floats) -> tuple[float, float]:
-    """Root mean square error of the inner landmarks, and the distance of the outer eye corners, px."""
-    mean, modes = basis.at(solution.landmark_vertices)
-    fitted = solution.camera.project(mean + (modes @ solution.coefficients).reshape(-1, 3))
-    squares = ((fitted - pixels)[INNER] ** 2).sum(axis=1)
-    right, left = np.where(np.isfinite(pixels), pixels, fitted)[list(OUTER_EYES)]
-    there = np.isfinite(squares)
-    rms = float(np.sqrt(squares[there].mean())) if there.any() else float("nan")
-    return rms, float(np.linalg.norm(left - right))

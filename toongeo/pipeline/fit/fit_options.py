@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS
 from toongeo.pipeline.fit.robust_weights import KERNELS
 
 __all__ = ["FitOptions", "changed_options"]
@@ -49,6 +50,8 @@ class FitOptions:
     robust : {"geman-mcclure", "huber"} or None
         Kernel of the landmark errors, as wide as their median asks: between the passes a point that lies far
         off beside the others loses weight. None is least squares.
+    adjust : {"expression", "identity+expression"} or None
+        Bend the coefficients onto the landmarks in the end, without a prior: see `adjust_coefficients`.
 
     Raises
     ------
@@ -68,6 +71,7 @@ class FitOptions:
     tolerance: float = 1e-7
     max_evaluations: int = 2000
     robust: str | None = "geman-mcclure"
+    adjust: str | None = None
 
     def __post_init__(self) -> None:
         for name in _NUMBERS:
@@ -79,6 +83,7 @@ class FitOptions:
                 wanted = "a finite number >= 0" if name in _MAY_BE_ZERO else "a finite number > 0"
                 raise ValueError(f"{name}: expected {wanted}, got {value!r}")
         _known("robust", self.robust, (None, *KERNELS))
+        _known("adjust", self.adjust, (None, *ADJUSTMENTS))
         if self.jaw_tangent > 1:
             raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")
 
