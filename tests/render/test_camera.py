@@ -85,6 +85,11 @@ def test_scaled_keeps_the_area_of_every_pixel(camera):
     np.testing.assert_allclose(camera.scaled(3.0).scaled(1 / 3).project(points()), px, atol=1e-10)
 
 
+def test_cropped_shifts_and_then_scales_pixels(camera):
+    found = camera.cropped([12.0, -7.5], 0.3).project(points())
+    np.testing.assert_allclose(found, 0.3 * (camera.project(points()) - [12.0, -7.5]), atol=1e-10)
+
+
 def test_camera_is_read_only(camera):
     with pytest.raises(ValueError, match="read-only"):
         camera.rotation[0, 0] = 2.0

@@ -187,6 +187,11 @@ class ScaledOrthographicCamera:
             raise ValueError(f"factor: expected a finite number > 0, got {factor!r}")
         return ScaledOrthographicCamera(self.scale * factor, self.rotation, factor * (self.translation + 0.5) - 0.5)
 
+    def cropped(self, corner: ArrayLike, factor: float) -> ScaledOrthographicCamera:
+        """Camera whose pixels are ``factor * (px - corner)``."""
+        shifted = self.translation - np.asarray(corner, dtype=np.float64)
+        return ScaledOrthographicCamera(self.scale * factor, self.rotation, shifted * factor)
+
     @property
     def yaw(self) -> float:
         """Degrees; > 0 faces the subject's left. Undetermined (0) when looking straight up or down."""

@@ -14,7 +14,7 @@ from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.inner_error import inner_error
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
-from toongeo.protocols import DifferentiableCamera
+from toongeo.protocols import HeadCamera
 
 __all__ = ["ADJUSTMENTS", "DistanceLoss", "adjust_coefficients"]
 
@@ -32,7 +32,7 @@ class DistanceLoss:
 
     Attributes
     ----------
-    camera : DifferentiableCamera
+    camera : HeadCamera
     points : (k, 2) float, px
     mean, modes : (k, 3) and (3 k, c) float, mm
         Landmarks ``p = mean + modes a`` (Eq. 8).
@@ -40,7 +40,7 @@ class DistanceLoss:
         Distances are measured in it; the kink at zero is rounded off below 1/1000 of it.
     """
 
-    camera: DifferentiableCamera
+    camera: HeadCamera
     points: Floats
     mean: Floats
     modes: Floats

@@ -13,7 +13,7 @@ from toongeo._read_only import read_only
 
 if TYPE_CHECKING:
     from toongeo.model.morphable_model import MorphableModel
-    from toongeo.render.camera import ScaledOrthographicCamera
+    from toongeo.protocols import HeadCamera
 
 __all__ = ["FaceFit", "FitReport"]
 
@@ -71,18 +71,18 @@ class FaceFit:
         Standard deviations.
     expression : (64,) float64
         Named expressions in [0, 1], the others in standard deviations.
-    camera : ScaledOrthographicCamera
+    camera : HeadCamera
     landmark_vertices : (68,) int64
         Vertices of the landmarks as this pose shows them: jaw points lie on the outline of the head.
     model : MorphableModel
     report : FitReport
-    albedo, light : None
-        Left for the photometric term.
+    albedo, light : float arrays or None
+        From the regressor; left for the photometric term.
     """
 
     identity: NDArray[np.float64]
     expression: NDArray[np.float64]
-    camera: ScaledOrthographicCamera
+    camera: HeadCamera
     landmark_vertices: NDArray[np.int64]
     model: MorphableModel
     report: FitReport
@@ -106,7 +106,7 @@ class FaceFit:
 
     def project(self, points: ArrayLike) -> NDArray[np.float64]:
         """Points (k, 3), mm, model frame -> pixels (k, 2)."""
-        return self.camera.project(points)
+        return self.camera.project(np.asarray(points, np.float64))
 
     def region(self, name: str) -> NDArray[np.bool_]:
         """Mask (n,) of a named region of the model, such as ``"face"`` or ``"lips"``."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
 from toongeo.pipeline.fit.inner_error import inner_error
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
+from toongeo.protocols import Coefficients, Regressor
 
 __all__ = ["fit_3dmm"]
 
@@ -31,6 +33,7 @@ def fit_3dmm(
     model: MorphableModel | None = None,
     algorithm: str = "LD_LBFGS",
     options: FitOptions | None = None,
+    regressor: Regressor | None = None,
     **changes: Any,
 ) -> FaceFit:
     """Pose, identity and expression of a morphable model from 68 landmarks.
@@ -57,6 +60,8 @@ def fit_3dmm(
         size.
     options : FitOptions, optional
         Weights and limits.
+    regressor : Regressor, optional
+        ``(img, landmarks) -> Coefficients``: where the fit starts or, with ``refine=False``, the answer.
     **changes
         Fields of `FitOptions` that differ from ``options``, as in ``fit_3dmm(img, points, robust=None)``.
 
@@ -68,7 +73,7 @@ def fit_3dmm(
     ------
     ValueError
         If the landmarks have another shape, hold infinities, are fewer than 6, coincide, lie on a line or
-        outside the picture, or the algorithm is not known.
+        outside the picture, or the algorithm is not known. If a regressor's coefficients have another shape.
     RuntimeError
         If the optimizer fails.
 
@@ -95,9 +100,14 @@ def fit_3dmm(
         raise ValueError(f"algorithm: no algorithm {algorithm!r}; known: {', '.join(known_algorithms())}")
     warnings = check_landmarks(landmarks, _image_shape(img))
     pixels = np.array(landmarks, np.float64)
+    if regressor is None and not options.refine:
+        raise ValueError("refine: expected a regressor whose answer is not to be refined, got none")
+    guess = Coefficients() if regressor is None else regressor(img, pixels.copy())
     with one_thread():
-        problem = LandmarkFit.of(model, pixels, options)
+        problem = LandmarkFit.of(model, pixels, options, guess)
         solution = problem.solve(algorithm)
+        if guess.pose is not None and not options.refine:
+            solution = replace(solution, camera=guess.pose)
         mean, modes = problem.basis.at(solution.landmark_vertices)
         fitted = solution.camera.project(mean + (modes @ solution.coefficients).reshape(-1, 3))
         rms_px, outer_eye_px = inner_error(fitted, pixels)
@@ -107,6 +117,8 @@ def fit_3dmm(
         camera=solution.camera,
         landmark_vertices=solution.landmark_vertices,
         model=model,
+        albedo=guess.albedo,
+        light=guess.light,
         report=FitReport(
             algorithm=algorithm,
             status=solution.status,

@@ -52,6 +52,9 @@ class FitOptions:
         off beside the others loses weight. None is least squares.
     adjust : {"expression", "identity+expression"} or None
         Bend the coefficients onto the landmarks in the end, without a prior: see `adjust_coefficients`.
+    refine : bool
+        Whether a regressor's coefficients are where the fit starts, or, if False, the answer; a pose that the
+        regressor does not give is found for its shape.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class FitOptions:
     max_evaluations: int = 2000
     robust: str | None = "geman-mcclure"
     adjust: str | None = None
+    refine: bool = True
 
     def __post_init__(self) -> None:
         for name in _NUMBERS:
@@ -84,6 +88,7 @@ class FitOptions:
                 raise ValueError(f"{name}: expected {wanted}, got {value!r}")
         _known("robust", self.robust, (None, *KERNELS))
         _known("adjust", self.adjust, (None, *ADJUSTMENTS))
+        _known("refine", self.refine, (True, False))
         if self.jaw_tangent > 1:
             raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from toongeo.pipeline.fit.robust_weights import robust_weights
 from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.pipeline.fit.total_loss import TotalLoss
 from toongeo.pipeline.fit.unknowns import Unknowns
+from toongeo.protocols import Coefficients, HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["LandmarkFit", "Solution"]
@@ -39,7 +40,7 @@ class Solution:
     """Coefficients (c,) and camera at the minimum, the landmarks of that pose, and how it was reached."""
 
     coefficients: Floats
-    camera: ScaledOrthographicCamera
+    camera: HeadCamera
     landmark_vertices: NDArray[np.int64]
     landmark_loss: float
     prior_loss: float
@@ -69,6 +70,7 @@ class LandmarkFit:
     prior : PriorLoss
     bounds : two (n,) arrays
     options : FitOptions
+    start : (n,) float
     trust : (k,) float
         Robust weights with which the first pass begins.
     """
@@ -82,19 +84,31 @@ class LandmarkFit:
     prior: PriorLoss
     bounds: tuple[Floats, Floats]
     options: FitOptions
+    start: Floats
     trust: Floats
 
     @classmethod
-    def of(cls, model: MorphableModel, pixels: Floats, options: FitOptions) -> LandmarkFit:
-        """The problem for landmarks (68, 2) px; NaN rows are missing."""
+    def of(
+        cls, model: MorphableModel, pixels: Floats, options: FitOptions, guess: Coefficients | None = None
+    ) -> LandmarkFit:
+        """The problem for landmarks (68, 2) px, NaN rows missing, started at a guess or held there."""
+        guess = Coefficients() if guess is None else guess
         unknowns = Unknowns(len(model.identity), len(model.expression))
         basis = landmark_basis(model)
         seen = np.flatnonzero(np.isfinite(pixels).all(axis=1))
         # The jaw's vertices depend on the pose, so the first pose leaves the jaw out while enough is left.
         posing = np.intersect1d(seen, INNER)
         posing = posing if len(posing) >= _FEWEST else seen
-        trusted = _posing_trust(basis.at(basis.landmarks[posing])[0], pixels[posing], options)
-        frame = canonical_frame(basis.at(basis.landmarks[posing])[0], pixels[posing], trusted)
+        start = _start(guess, unknowns)
+        # The mean face sets the unit of the errors, whatever the guess: where a fit starts is not what it minimises.
+        face = basis.at(basis.landmarks[posing])[0]
+        trusted = _posing_trust(face, pixels[posing], options)
+        frame = canonical_frame(face, pixels[posing], trusted)
+        if guess.pose is not None:
+            posed = canonical_frame(face, guess.pose.project(face))
+            turned = replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0)
+            frame = turned if options.refine else posed
+        bounds = _bounds(model, unknowns, options.max_deviation)
         trust = np.ones(68)
         trust[posing] = trusted
         points = np.full((68, 2), np.nan)
@@ -107,8 +121,9 @@ class LandmarkFit:
             points=points[seen],
             weights=_weights(points, options)[seen] / basis.outer_eye_mm**2,
             prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight),
-            bounds=_bounds(model, unknowns, options.max_deviation),
+            bounds=bounds if options.refine else _held(bounds, start, unknowns, guess.pose is not None),
             options=options,
+            start=start,
             trust=trust[seen],
         )
 
@@ -120,7 +135,7 @@ class LandmarkFit:
         A few points that lie far off beside the others are no face outside the model: they lose their weight, in
         the misfit and in the next pass.
         """
-        x = np.zeros(self.unknowns.size)
+        x = self.start
         placed = self._visible(x)
         passes = evaluations = 0
         prior_weight, trust = self.options.prior_weight, self.trust
@@ -183,6 +198,27 @@ class LandmarkFit:
 
     def _visible(self, x: Floats) -> NDArray[np.int64]:
         return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
+
+
+def _start(guess: Coefficients, unknowns: Unknowns) -> Floats:
+    """Unknowns (n,) at a guess, in the frame of its pose."""
+    x = np.zeros(unknowns.size)
+    for name, value in (("identity", guess.identity), ("expression", guess.expression)):
+        where = getattr(unknowns, name)
+        if value is None:
+            continue
+        if value.shape != x[where].shape:
+            raise ValueError(f"regressor: expected {name} of shape {x[where].shape}, got {value.shape}")
+        x[where] = value
+    return x
+
+
+def _held(bounds: tuple[Floats, Floats], start: Floats, unknowns: Unknowns, pose_too: bool) -> tuple[Floats, Floats]:
+    """Bounds that leave only the pose free, or nothing."""
+    held = slice(None) if pose_too else unknowns.shape
+    lower, upper = (bound.copy() for bound in bounds)
+    lower[held] = upper[held] = start[held]
+    return lower, upper
 
 
 def _posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats:
