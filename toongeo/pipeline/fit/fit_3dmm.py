@@ -16,8 +16,9 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
-from toongeo.pipeline.fit.inner_error import inner_error
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
+from toongeo.pipeline.fit.landmark_table import landmark_table, table_landmarks
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
 from toongeo.protocols import Coefficients, Regressor
 
@@ -36,7 +37,7 @@ def fit_3dmm(
     regressor: Regressor | None = None,
     **changes: Any,
 ) -> FaceFit:
-    """Pose, identity and expression of a morphable model from 68 landmarks.
+    """Pose, identity and expression of a morphable model from landmarks.
 
     Minimises ``w_l L_lan + w_r L_reg`` (Eq. 3 without the photometric term): the landmark loss of Eq. 4
     and the prior of Eq. 6. The camera is scaled orthographic. Jaw points slide along the contour lines of
@@ -52,7 +53,7 @@ def fit_3dmm(
     img : (H, W, 3) array or None
         The picture; here only its size is looked at, to check the landmarks against.
     landmarks : (68, 2) array_like, px
-        iBUG-68 order; x right, y down, integer = pixel centre. A NaN row is a missing point.
+        iBUG-68 order, or as ``scheme`` says; x right, y down, integer = pixel centre. A NaN row is a missing point.
     model : MorphableModel, optional
         `default_model` if None.
     algorithm : str
@@ -98,19 +99,22 @@ def fit_3dmm(
     model = default_model() if model is None else model
     if algorithm not in known_algorithms():
         raise ValueError(f"algorithm: no algorithm {algorithm!r}; known: {', '.join(known_algorithms())}")
-    warnings = check_landmarks(landmarks, _image_shape(img))
-    pixels = np.array(landmarks, np.float64)
+    image_shape, table, warnings = _image_shape(img), None, []
+    if isinstance(options.scheme, str):
+        pixels = ibug_landmarks(landmarks, options.scheme)
+        warnings = check_landmarks(pixels, image_shape)
+    else:
+        table = landmark_table(options.scheme, model)
+        pixels = table_landmarks(landmarks, table)
     if regressor is None and not options.refine:
         raise ValueError("refine: expected a regressor whose answer is not to be refined, got none")
     guess = Coefficients() if regressor is None else regressor(img, pixels.copy())
     with one_thread():
-        problem = LandmarkFit.of(model, pixels, options, guess)
+        problem = LandmarkFit.of(model, pixels, options, guess, table)
         solution = problem.solve(algorithm)
         if guess.pose is not None and not options.refine:
             solution = replace(solution, camera=guess.pose)
-        mean, modes = problem.basis.at(solution.landmark_vertices)
-        fitted = solution.camera.project(mean + (modes @ solution.coefficients).reshape(-1, 3))
-        rms_px, outer_eye_px = inner_error(fitted, pixels)
+        rms_px, outer_eye_px = problem.error(solution, pixels)
     fit = FaceFit(
         identity=solution.coefficients[problem.unknowns.identity],
         expression=solution.coefficients[problem.unknowns.expression],

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS
+from toongeo.pipeline.fit.ibug_landmarks import SCHEMES
 from toongeo.pipeline.fit.robust_weights import KERNELS
 
 __all__ = ["FitOptions", "changed_options"]
@@ -50,6 +51,9 @@ class FitOptions:
     robust : {"geman-mcclure", "huber"} or None
         Kernel of the landmark errors, as wide as their median asks: between the passes a point that lies far
         off beside the others loses weight. None is least squares.
+    scheme : {"ibug68", "ibug51", "ibug49"}, (k,) int array, or a pair (faces (k,), weights (k, 3))
+        What the landmarks are: a known scheme, vertices of the model, or points in its triangles. With a table
+        all points count alike, none slides along the jaw, and the 68 vertices of the result are the model's own.
     adjust : {"expression", "identity+expression"} or None
         Bend the coefficients onto the landmarks in the end, without a prior: see `adjust_coefficients`.
     refine : bool
@@ -74,6 +78,7 @@ class FitOptions:
     tolerance: float = 1e-7
     max_evaluations: int = 2000
     robust: str | None = "geman-mcclure"
+    scheme: Any = "ibug68"
     adjust: str | None = None
     refine: bool = True
 
@@ -88,6 +93,11 @@ class FitOptions:
                 raise ValueError(f"{name}: expected {wanted}, got {value!r}")
         _known("robust", self.robust, (None, *KERNELS))
         _known("adjust", self.adjust, (None, *ADJUSTMENTS))
+        named = isinstance(self.scheme, str)
+        if named:
+            _known("scheme", self.scheme, tuple(SCHEMES))
+        if self.adjust is not None and not named:
+            raise ValueError("adjust: expected a scheme by name to go with it, got a table")
         _known("refine", self.refine, (True, False))
         if self.jaw_tangent > 1:
             raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")

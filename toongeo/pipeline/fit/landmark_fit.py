@@ -7,13 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.ibug68 import INNER, PARTS
+from toongeo.model.ibug68 import INNER, OUTER_EYES, PARTS
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
 from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.inner_error import inner_error
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
+from toongeo.pipeline.fit.landmark_table import LandmarkTable
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.outlier_errors import NEIGHBOURS, outlier_errors
 from toongeo.pipeline.fit.prior_loss import PriorLoss
@@ -70,6 +72,11 @@ class LandmarkFit:
     prior : PriorLoss
     bounds : two (n,) arrays
     options : FitOptions
+    own : mean (k, 3) and modes (3 k, c), or None
+        Landmarks of the caller's own table, which do not slide.
+    count : int
+        N of Eq. 4: a point that is missing counts.
+    neighbours : (k, k) bool
     start : (n,) float
     trust : (k,) float
         Robust weights with which the first pass begins.
@@ -84,24 +91,36 @@ class LandmarkFit:
     prior: PriorLoss
     bounds: tuple[Floats, Floats]
     options: FitOptions
+    own: tuple[Floats, Floats] | None
+    count: int
+    neighbours: NDArray[np.bool_]
     start: Floats
     trust: Floats
 
     @classmethod
     def of(
-        cls, model: MorphableModel, pixels: Floats, options: FitOptions, guess: Coefficients | None = None
+        cls,
+        model: MorphableModel,
+        pixels: Floats,
+        options: FitOptions,
+        guess: Coefficients | None = None,
+        table: LandmarkTable | None = None,
     ) -> LandmarkFit:
-        """The problem for landmarks (68, 2) px, NaN rows missing, started at a guess or held there."""
+        """The problem for landmarks px, NaN rows missing, started at a guess or held there.
+
+        They are (68, 2), or (k, 2) with a table.
+        """
         guess = Coefficients() if guess is None else guess
         unknowns = Unknowns(len(model.identity), len(model.expression))
         basis = landmark_basis(model)
         seen = np.flatnonzero(np.isfinite(pixels).all(axis=1))
         # The jaw's vertices depend on the pose, so the first pose leaves the jaw out while enough is left.
-        posing = np.intersect1d(seen, INNER)
-        posing = posing if len(posing) >= _FEWEST else seen
+        inner = np.intersect1d(seen, INNER)
+        posing = inner if table is None and len(inner) >= _FEWEST else seen
+        own = None if table is None else table.rows(model)
         start = _start(guess, unknowns)
         # The mean face sets the unit of the errors, whatever the guess: where a fit starts is not what it minimises.
-        face = basis.at(basis.landmarks[posing])[0]
+        face = basis.at(basis.landmarks[posing])[0] if own is None else own[0][posing]
         trusted = _posing_trust(face, pixels[posing], options)
         frame = canonical_frame(face, pixels[posing], trusted)
         if guess.pose is not None:
@@ -109,9 +128,9 @@ class LandmarkFit:
             turned = replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0)
             frame = turned if options.refine else posed
         bounds = _bounds(model, unknowns, options.max_deviation)
-        trust = np.ones(68)
+        trust = np.ones(len(pixels))
         trust[posing] = trusted
-        points = np.full((68, 2), np.nan)
+        points = np.full(pixels.shape, np.nan)
         points[seen] = frame.from_pixels(pixels[seen])
         return cls(
             unknowns=unknowns,
@@ -119,10 +138,13 @@ class LandmarkFit:
             frame=frame,
             seen=seen,
             points=points[seen],
-            weights=_weights(points, options)[seen] / basis.outer_eye_mm**2,
+            weights=_weights(points, options, table)[seen] / basis.outer_eye_mm**2,
             prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight),
             bounds=bounds if options.refine else _held(bounds, start, unknowns, guess.pose is not None),
             options=options,
+            own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
+            count=len(pixels),
+            neighbours=_neighbours(seen, table),
             start=start,
             trust=trust[seen],
         )
@@ -156,9 +178,10 @@ class LandmarkFit:
             trusted, trust = trust, self._trusted(loss.landmark.residuals(x))
             if passes == 1:
                 misfit = self.loss(before, prior_weight, trust).landmark(x)[0]
-                prior_weight *= max(1.0, misfit / (prior_weight * len(placed)))
+                prior_weight *= max(1.0, misfit / (prior_weight * loss.landmark.count))
             settled = np.abs(trust - trusted).max() <= _SETTLED
-            if np.array_equal(before, placed) and prior_weight == loss.prior_weight and settled:
+            stayed = self.own is not None or np.array_equal(before, placed)
+            if stayed and prior_weight == loss.prior_weight and settled:
                 break
         return Solution(
             coefficients=x[self.unknowns.shape],
@@ -174,14 +197,25 @@ class LandmarkFit:
             outliers=tuple(int(k) for k in self.seen[trusted < _DISTRUST]),
         )
 
+    def error(self, solution: Solution, pixels: Floats) -> tuple[float, float]:
+        """Root mean square error of the inner landmarks, or of all in a table, and the outer-eye distance, px."""
+        mean, modes = self.basis.at(solution.landmark_vertices)
+        fitted = solution.camera.project(mean + (modes @ solution.coefficients).reshape(-1, 3))
+        if self.own is None:
+            return inner_error(fitted, pixels)
+        own = solution.camera.project(self.own[0] + (self.own[1] @ solution.coefficients).reshape(-1, 3))
+        right, left = fitted[list(OUTER_EYES)]
+        rms = np.sqrt(((own - pixels[self.seen]) ** 2).sum(axis=1).mean())
+        return float(rms), float(np.linalg.norm(left - right))
+
     def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float, trust: Floats | None = None) -> TotalLoss:
         """Eq. 3 with the landmarks (68,) at these vertices, this ``w_r``, and robust weights (k,)."""
-        mean, modes = self.basis.at(landmark_vertices[self.seen])
+        mean, modes = self.basis.at(landmark_vertices[self.seen]) if self.own is None else self.own
         landmark = LandmarkLoss(
             unknowns=self.unknowns,
             points=self.points,
             weights=self.weights if trust is None else trust[:, None, None] * self.weights,
-            count=len(landmark_vertices),
+            count=self.count,
             mean=mean,
             modes=modes,
             rotation0=self.frame.rotation0,
@@ -191,10 +225,10 @@ class LandmarkFit:
     def _trusted(self, residuals: Floats) -> Floats:
         """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
         importance = np.linalg.norm(self.weights, ord=2, axis=(1, 2)) * self.basis.outer_eye_mm**2
-        reasons = outlier_errors(residuals, NEIGHBOURS[np.ix_(self.seen, self.seen)])
+        reasons = outlier_errors(residuals, self.neighbours)
         costs = np.einsum("cki,kij,ckj->ck", reasons, self.weights, reasons).min(axis=0)
         squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
-        return robust_weights(squares, self.options.robust, 68 * self.options.prior_weight)
+        return robust_weights(squares, self.options.robust, self.count * self.options.prior_weight)
 
     def _visible(self, x: Floats) -> NDArray[np.int64]:
         return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
@@ -232,9 +266,21 @@ def _posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats
     return trust
 
 
-def _weights(points: Floats, options: FitOptions) -> Floats:
-    """Weights (68, 2, 2) of Eq. 4."""
-    weights = np.tile(np.eye(2), (68, 1, 1))
+def _row_blocks(modes: Floats, points: NDArray[np.int64]) -> Floats:
+    """Modes (3 p, c) of some points out of those (3 k, c) of all."""
+    return modes.reshape(len(modes) // 3, 3, -1)[points].reshape(3 * len(points), -1)
+
+
+def _neighbours(seen: NDArray[np.int64], table: LandmarkTable | None) -> NDArray[np.bool_]:
+    """Which of the points that are there follow each other; a table does not tell."""
+    return NEIGHBOURS[np.ix_(seen, seen)] if table is None else np.zeros((len(seen), len(seen)), bool)
+
+
+def _weights(points: Floats, options: FitOptions, table: LandmarkTable | None) -> Floats:
+    """Weights (k, 2, 2) of Eq. 4."""
+    weights = np.tile(np.eye(2), (len(points), 1, 1))
+    if table is not None:
+        return weights
     weights[PARTS["jaw"]] = options.jaw_weight * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
     return weights
 
