@@ -26,7 +26,7 @@ from toongeo.pipeline.fit.unknowns import Unknowns
 from toongeo.protocols import Coefficients, HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
-__all__ = ["LandmarkFit", "Solution"]
+__all__ = ["LandmarkFit", "Placement", "Solution"]
 
 Floats = NDArray[np.float64]
 
@@ -52,6 +52,15 @@ class Solution:
     passes: int
     evaluations: int
     outliers: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """What a pass holds fixed: landmark vertices (68,), robust weights (k,), and ``w_r``."""
+
+    vertices: NDArray[np.int64]
+    trust: Floats
+    prior_weight: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,12 +166,10 @@ class LandmarkFit:
         A few points that lie far off beside the others are no face outside the model: they lose their weight, in
         the misfit and in the next pass.
         """
-        x = self.start
-        placed = self._visible(x)
+        x, placement = self.start, self.placement(self.start)
         passes = evaluations = 0
-        prior_weight, trust = self.options.prior_weight, self.trust
         while passes < self.options.max_passes:
-            loss = self.loss(placed, prior_weight, trust)
+            loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
             minimum = nlopt_minimize(
                 loss,
                 x,
@@ -174,27 +181,46 @@ class LandmarkFit:
             )
             x = minimum.x
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
-            before, placed = placed, self._visible(x)
-            trusted, trust = trust, self._trusted(loss.landmark.residuals(x))
-            if passes == 1:
-                misfit = self.loss(before, prior_weight, trust).landmark(x)[0]
-                prior_weight *= max(1.0, misfit / (prior_weight * loss.landmark.count))
-            settled = np.abs(trust - trusted).max() <= _SETTLED
-            stayed = self.own is not None or np.array_equal(before, placed)
-            if stayed and prior_weight == loss.prior_weight and settled:
+            before, placement = placement, self.renewed(placement, x, first=passes == 1)
+            if self.settled(before, placement):
                 break
+        return self.solution(x, before, minimum.status, passes, evaluations)
+
+    def placement(self, x: Floats) -> Placement:
+        """What the first pass holds fixed."""
+        return Placement(self._visible(x), self.trust, self.options.prior_weight)
+
+    def renewed(self, placement: Placement, x: Floats, *, first: bool) -> Placement:
+        """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
+        loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
+        trust = self._trusted(loss.landmark.residuals(x))
+        prior_weight = placement.prior_weight
+        if first:
+            misfit = self.loss(placement.vertices, prior_weight, trust).landmark(x)[0]
+            prior_weight *= max(1.0, misfit / (prior_weight * self.count))
+        return Placement(self._visible(x), trust, prior_weight)
+
+    def settled(self, before: Placement, after: Placement) -> bool:
+        """Whether another pass would find the same."""
+        stayed = self.own is not None or np.array_equal(before.vertices, after.vertices)
+        believed = np.abs(after.trust - before.trust).max() <= _SETTLED
+        return bool(stayed and believed and before.prior_weight == after.prior_weight)
+
+    def solution(self, x: Floats, placement: Placement, status: str, passes: int, evaluations: int) -> Solution:
+        """The face at ``x``, where a pass with this placement ended."""
+        loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
         return Solution(
             coefficients=x[self.unknowns.shape],
             camera=self.frame.camera(x, self.unknowns),
-            landmark_vertices=placed,
+            landmark_vertices=self._visible(x),
             landmark_loss=loss.landmark(x)[0],
             prior_loss=loss.prior(x)[0],
             prior_weight=loss.prior_weight,
-            loss=minimum.value,
-            status=minimum.status,
+            loss=loss(x)[0],
+            status=status,
             passes=passes,
             evaluations=evaluations,
-            outliers=tuple(int(k) for k in self.seen[trusted < _DISTRUST]),
+            outliers=tuple(int(k) for k in self.seen[placement.trust < _DISTRUST]),
         )
 
     def error(self, solution: Solution, pixels: Floats) -> tuple[float, float]:
