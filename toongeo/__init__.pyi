@@ -15,7 +15,9 @@ from toongeo.pipeline import AlignedFace as AlignedFace
 from toongeo.pipeline import Eyes as Eyes
 from toongeo.pipeline import FaceFit as FaceFit
 from toongeo.pipeline import FitOptions as FitOptions
+from toongeo.pipeline import RidgeRegressor as RidgeRegressor
 from toongeo.pipeline import Rig as Rig
+from toongeo.pipeline import adjust_coefficients as adjust_coefficients
 from toongeo.pipeline import align_face as align_face
 from toongeo.pipeline import bake_eyes as bake_eyes
 from toongeo.pipeline import bake_texture as bake_texture
@@ -25,6 +27,8 @@ from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
+from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
+from toongeo.protocols import Coefficients as Coefficients
 from toongeo.render import ScaledOrthographicCamera as ScaledOrthographicCamera
 from toongeo.render import render_mesh as render_mesh
 

@@ -35,6 +35,13 @@ def test_view_is_rigid_and_holds_depth(camera):
     np.testing.assert_allclose(np.linalg.norm(seen, axis=1), np.linalg.norm(V, axis=1), rtol=1e-13)
 
 
+def test_jacobian_is_the_derivative_of_the_pixels(camera):
+    V = points()
+    for k, step in enumerate(1e-3 * np.eye(3)):
+        difference = (camera.project(V + step) - camera.project(V - step)) / 2e-3
+        np.testing.assert_allclose(camera.jacobian(V)[:, :, k], difference, atol=1e-8)
+
+
 def test_rotating_the_mesh_equals_rotating_the_camera(camera):
     turn = ScaledOrthographicCamera.look(10.0, 20.0, 30.0).rotation
     composed = ScaledOrthographicCamera(camera.scale, camera.rotation @ turn, camera.translation)
@@ -76,6 +83,11 @@ def test_scaled_keeps_the_area_of_every_pixel(camera):
     px, doubled = camera.project(points()), camera.scaled(3.0).project(points())
     np.testing.assert_allclose(doubled + 0.5, 3.0 * (px + 0.5), atol=1e-10)
     np.testing.assert_allclose(camera.scaled(3.0).scaled(1 / 3).project(points()), px, atol=1e-10)
+
+
+def test_cropped_shifts_and_then_scales_pixels(camera):
+    found = camera.cropped([12.0, -7.5], 0.3).project(points())
+    np.testing.assert_allclose(found, 0.3 * (camera.project(points()) - [12.0, -7.5]), atol=1e-10)
 
 
 def test_camera_is_read_only(camera):

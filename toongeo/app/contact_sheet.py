@@ -1,7 +1,5 @@
 """One picture that shows what became of a face."""
 
-from dataclasses import replace
-
 import cv2
 import numpy as np
 
@@ -79,8 +77,7 @@ def _input(img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
 
 def _overlay(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
     corner, scale = _frame(landmarks, tile)
-    fitted = avatar.fit.camera
-    camera = replace(fitted, scale=fitted.scale * scale, translation=(fitted.translation - corner) * scale)
+    camera = avatar.fit.camera.cropped(corner, scale)
     face = avatar.render(size=tile, camera=camera, textured=False).astype(float)
     return np.rint(0.45 * _window(img, corner, scale, tile) + 0.55 * face).astype(np.uint8)
 

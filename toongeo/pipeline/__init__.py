@@ -1,9 +1,11 @@
 """The way of the data, a stage a folder: fit, align, texture, rig."""
 
 from toongeo.pipeline.align.align_face import AlignedFace, align_face
+from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.ridge_regressor import RidgeRegressor, train_ridge_regressor
 from toongeo.pipeline.rig.build_rig import Rig, build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
@@ -17,7 +19,9 @@ __all__ = [
     "Eyes",
     "FaceFit",
     "FitOptions",
+    "RidgeRegressor",
     "Rig",
+    "adjust_coefficients",
     "align_face",
     "bake_eyes",
     "bake_texture",
@@ -27,4 +31,5 @@ __all__ = [
     "diffuse_texture",
     "fit_3dmm",
     "fit_eyes",
+    "train_ridge_regressor",
 ]

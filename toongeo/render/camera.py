@@ -167,6 +167,11 @@ class ScaledOrthographicCamera:
         seen[:, 2] = along
         return seen @ self.rotation
 
+    def jacobian(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Derivative (k, 2, 3), px/mm, of the pixels by points (k, 3); the same for all of them."""
+        A = (self.scale * _FLIP)[:, None] * self.rotation[:2]
+        return np.tile(A, (len(_rows(points, 3, "points")), 1, 1))
+
     def scaled(self, factor: float) -> ScaledOrthographicCamera:
         """Camera of the same picture resized by ``factor`` (2 = twice as many pixels a side).
 
@@ -181,6 +186,11 @@ class ScaledOrthographicCamera:
         if not (np.isfinite(factor) and factor > 0.0):
             raise ValueError(f"factor: expected a finite number > 0, got {factor!r}")
         return ScaledOrthographicCamera(self.scale * factor, self.rotation, factor * (self.translation + 0.5) - 0.5)
+
+    def cropped(self, corner: ArrayLike, factor: float) -> ScaledOrthographicCamera:
+        """Camera whose pixels are ``factor * (px - corner)``."""
+        shifted = self.translation - np.asarray(corner, dtype=np.float64)
+        return ScaledOrthographicCamera(self.scale * factor, self.rotation, shifted * factor)
 
     @property
     def yaw(self) -> float:

@@ -83,7 +83,7 @@ def test_the_minimum_is_one(face):
     fit = fit_3dmm(None, face, options=options)
     problem = LandmarkFit.of(fit.model, face, options)
     placed = visible_landmarks(problem.basis, np.zeros(144), problem.frame.rotation0)
-    loss = problem.loss(placed, problem.options.prior_weight)
+    loss = problem.loss(placed, problem.options.prior_weight, problem.trust)
     x = np.zeros(problem.unknowns.size)
     x[problem.unknowns.shape] = coefficients(fit)
     # The pose is optimal for these coefficients: find it again from the camera.

@@ -58,15 +58,15 @@ class CanonicalFrame:
         )
 
 
-def canonical_frame(points: Floats, pixels: Floats) -> CanonicalFrame:
-    """Frame of the closed-form pose of model points (k, 3) mm seen at pixels (k, 2).
+def canonical_frame(points: Floats, pixels: Floats, weights: Floats | None = None) -> CanonicalFrame:
+    """Frame of the closed-form pose of model points (k, 3) mm seen at pixels (k, 2), weighted (k,).
 
     Raises
     ------
     ValueError
         If the pixels lie on a line.
     """
-    scale, rotation, origin = scaled_orthographic_pose(points, pixels)
+    scale, rotation, origin = scaled_orthographic_pose(points, pixels, weights)
     angle = np.arctan2(-rotation[0, 1], rotation[1, 1])
     roll = rotation_matrix(np.array([0.0, 0.0, angle]))
     return CanonicalFrame(scale, roll, origin, roll.T @ rotation)

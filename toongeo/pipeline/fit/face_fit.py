@@ -13,7 +13,7 @@ from toongeo._read_only import read_only
 
 if TYPE_CHECKING:
     from toongeo.model.morphable_model import MorphableModel
-    from toongeo.render.camera import ScaledOrthographicCamera
+    from toongeo.protocols import HeadCamera
 
 __all__ = ["FaceFit", "FitReport"]
 
@@ -42,6 +42,8 @@ class FitReport:
     warnings : tuple of str
         What seems odd about the landmarks, from `toongeo.io.check_landmarks`.
     seconds : float
+    outliers : tuple of int
+        Landmarks that the robust kernel has all but ignored (weight below 0.1).
     """
 
     algorithm: str
@@ -56,6 +58,7 @@ class FitReport:
     rms_percent: float
     warnings: tuple[str, ...]
     seconds: float
+    outliers: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,18 +71,18 @@ class FaceFit:
         Standard deviations.
     expression : (64,) float64
         Named expressions in [0, 1], the others in standard deviations.
-    camera : ScaledOrthographicCamera
+    camera : HeadCamera
     landmark_vertices : (68,) int64
         Vertices of the landmarks as this pose shows them: jaw points lie on the outline of the head.
     model : MorphableModel
     report : FitReport
-    albedo, light : None
-        Left for the photometric term.
+    albedo, light : float arrays or None
+        From the regressor; left for the photometric term.
     """
 
     identity: NDArray[np.float64]
     expression: NDArray[np.float64]
-    camera: ScaledOrthographicCamera
+    camera: HeadCamera
     landmark_vertices: NDArray[np.int64]
     model: MorphableModel
     report: FitReport
@@ -103,7 +106,7 @@ class FaceFit:
 
     def project(self, points: ArrayLike) -> NDArray[np.float64]:
         """Points (k, 3), mm, model frame -> pixels (k, 2)."""
-        return self.camera.project(points)
+        return self.camera.project(np.asarray(points, np.float64))
 
     def region(self, name: str) -> NDArray[np.bool_]:
         """Mask (n,) of a named region of the model, such as ``"face"`` or ``"lips"``."""

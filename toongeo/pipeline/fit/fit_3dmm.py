@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,19 +13,23 @@ from numpy.typing import ArrayLike, NDArray
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_landmarks import check_landmarks
 from toongeo.model.default_model import default_model
-from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
-from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.landmark_basis import LandmarkBasis
+from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
+from toongeo.pipeline.fit.landmark_table import landmark_table, table_landmarks
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
+from toongeo.pipeline.fit.solve_together import solve_together
+from toongeo.protocols import Coefficients, Regressor
 
 __all__ = ["fit_3dmm"]
 
 Floats = NDArray[np.float64]
 
 
+@overload
 def fit_3dmm(
     img: NDArray[np.uint8] | None,
     landmarks: ArrayLike,
@@ -30,8 +37,35 @@ def fit_3dmm(
     model: MorphableModel | None = None,
     algorithm: str = "LD_LBFGS",
     options: FitOptions | None = None,
-) -> FaceFit:
-    """Pose, identity and expression of a morphable model from 68 landmarks.
+    regressor: Regressor | None = None,
+    **changes: Any,
+) -> FaceFit: ...
+
+
+@overload
+def fit_3dmm(
+    img: list[NDArray[np.uint8] | None] | list[NDArray[np.uint8]] | list[None],
+    landmarks: Sequence[ArrayLike],
+    *,
+    model: MorphableModel | None = None,
+    algorithm: str = "LD_LBFGS",
+    options: FitOptions | None = None,
+    regressor: Regressor | None = None,
+    **changes: Any,
+) -> list[FaceFit]: ...
+
+
+def fit_3dmm(
+    img: Any,
+    landmarks: Any,
+    *,
+    model: MorphableModel | None = None,
+    algorithm: str = "LD_LBFGS",
+    options: FitOptions | None = None,
+    regressor: Regressor | None = None,
+    **changes: Any,
+) -> FaceFit | list[FaceFit]:
+    """Pose, identity and expression of a morphable model from landmarks.
 
     Minimises ``w_l L_lan + w_r L_reg`` (Eq. 3 without the photometric term): the landmark loss of Eq. 4
     and the prior of Eq. 6. The camera is scaled orthographic. Jaw points slide along the contour lines of
@@ -44,10 +78,12 @@ def fit_3dmm(
 
     Parameters
     ----------
-    img : (H, W, 3) array or None
-        The picture; here only its size is looked at, to check the landmarks against.
+    img : (H, W, 3) array or None, or a list of these
+        The picture; here only its size is looked at, to check the landmarks against. A list: pictures of one
+        person, who has one identity in all of them, and an expression and a pose in each.
     landmarks : (68, 2) array_like, px
-        iBUG-68 order; x right, y down, integer = pixel centre. A NaN row is a missing point.
+        iBUG-68 order, or as ``scheme`` says; x right, y down, integer = pixel centre. A NaN row is a missing point.
+        With a list of pictures, a list of as many.
     model : MorphableModel, optional
         `default_model` if None.
     algorithm : str
@@ -55,16 +91,21 @@ def fit_3dmm(
         size.
     options : FitOptions, optional
         Weights and limits.
+    regressor : Regressor, optional
+        ``(img, landmarks) -> Coefficients``: where the fit starts or, with ``refine=False``, the answer.
+    **changes
+        Fields of `FitOptions` that differ from ``options``, as in ``fit_3dmm(img, points, robust=None)``.
 
     Returns
     -------
-    FaceFit
+    FaceFit, or a list of as many as there are pictures
 
     Raises
     ------
     ValueError
         If the landmarks have another shape, hold infinities, are fewer than 6, coincide, lie on a line or
-        outside the picture, or the algorithm is not known.
+        outside the picture, or the algorithm is not known. If a regressor's coefficients have another shape, or there
+        are more or fewer landmarks than pictures.
     RuntimeError
         If the optimizer fails.
 
@@ -85,36 +126,98 @@ def fit_3dmm(
     True
     """
     started = time.perf_counter()
-    options = FitOptions() if options is None else options
+    options = changed_options(options, changes)
     model = default_model() if model is None else model
     if algorithm not in known_algorithms():
         raise ValueError(f"algorithm: no algorithm {algorithm!r}; known: {', '.join(known_algorithms())}")
-    warnings = check_landmarks(landmarks, _image_shape(img))
-    pixels = np.array(landmarks, np.float64)
+    if regressor is None and not options.refine:
+        raise ValueError("refine: expected a regressor whose answer is not to be refined, got none")
+    together = isinstance(img, list)
+    tasks = [
+        _task(*one, model, options, regressor) for one in (_pairs(img, landmarks) if together else [(img, landmarks)])
+    ]
     with one_thread():
-        problem = LandmarkFit.of(model, pixels, options)
-        solution = problem.solve(algorithm)
-        rms_px, outer_eye_px = _inner_error(problem.basis, solution, pixels)
+        if together:
+            solutions = solve_together([task.problem for task in tasks], algorithm)
+        else:
+            solutions = [tasks[0].problem.solve(algorithm)]
+        seconds = time.perf_counter() - started
+        fits = [_face(task, solution, algorithm, seconds) for task, solution in zip(tasks, solutions, strict=True)]
+        if options.adjust is not None:
+            limits = {"algorithm": algorithm, "max_evaluations": options.max_evaluations}
+            fits = [
+                adjust_coefficients(fit, task.pixels, options.adjust, **limits)
+                for fit, task in zip(fits, tasks, strict=True)
+            ]
+    return fits if together else fits[0]
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """One picture's problem, and what else its result says."""
+
+    model: MorphableModel
+    problem: LandmarkFit
+    pixels: NDArray[np.float64]
+    guess: Coefficients
+    warnings: list[str]
+
+
+def _pairs(imgs: list[Any], landmarks: Any) -> list[tuple[Any, Any]]:
+    if len(imgs) == 0 or len(landmarks) != len(imgs):
+        raise ValueError(f"landmarks: expected one set for each of {len(imgs)} pictures, got {len(landmarks)}")
+    return list(zip(imgs, landmarks, strict=True))
+
+
+def _task(
+    img: NDArray[np.uint8] | None,
+    landmarks: ArrayLike,
+    model: MorphableModel,
+    options: FitOptions,
+    regressor: Regressor | None,
+) -> _Task:
+    image_shape, table = _image_shape(img), None
+    warnings: list[str] = []
+    if isinstance(options.scheme, str):
+        pixels = ibug_landmarks(landmarks, options.scheme)
+        warnings = check_landmarks(pixels, image_shape)
+    else:
+        table = landmark_table(options.scheme, model)
+        pixels = table_landmarks(landmarks, table)
+    guess = Coefficients() if regressor is None else regressor(img, pixels.copy())
+    with one_thread():
+        problem = LandmarkFit.of(model, pixels, options, guess, table)
+    return _Task(model, problem, pixels, guess, warnings)
+
+
+def _face(task: _Task, solution: Solution, algorithm: str, seconds: float) -> FaceFit:
+    if task.guess.pose is not None and not task.problem.options.refine:
+        solution = replace(solution, camera=task.guess.pose)
+    rms_px, outer_eye_px = task.problem.error(solution, task.pixels)
+    report = FitReport(
+        algorithm=algorithm,
+        status=solution.status,
+        passes=solution.passes,
+        evaluations=solution.evaluations,
+        landmark_loss=solution.landmark_loss,
+        prior_loss=solution.prior_loss,
+        prior_weight=solution.prior_weight,
+        loss=solution.loss,
+        rms_px=rms_px,
+        rms_percent=100 * rms_px / outer_eye_px,
+        warnings=tuple(task.warnings),
+        seconds=seconds,
+        outliers=solution.outliers,
+    )
     return FaceFit(
-        identity=solution.coefficients[problem.unknowns.identity],
-        expression=solution.coefficients[problem.unknowns.expression],
+        identity=solution.coefficients[task.problem.unknowns.identity],
+        expression=solution.coefficients[task.problem.unknowns.expression],
         camera=solution.camera,
         landmark_vertices=solution.landmark_vertices,
-        model=model,
-        report=FitReport(
-            algorithm=algorithm,
-            status=solution.status,
-            passes=solution.passes,
-            evaluations=solution.evaluations,
-            landmark_loss=solution.landmark_loss,
-            prior_loss=solution.prior_loss,
-            prior_weight=solution.prior_weight,
-            loss=solution.loss,
-            rms_px=rms_px,
-            rms_percent=100 * rms_px / outer_eye_px,
-            warnings=tuple(warnings),
-            seconds=time.perf_counter() - started,
-        ),
+        model=task.model,
+        albedo=task.guess.albedo,
+        light=task.guess.light,
+        report=report,
     )
 
 
@@ -125,14 +228,3 @@ def _image_shape(img: NDArray[np.uint8] | None) -> tuple[int, ...] | None:
     if len(shape) != 3 or shape[2] != 3 or min(shape) < 1:
         raise ValueError(f"img: expected shape (H, W, 3) with H, W >= 1, got {shape}")
     return shape
-
-
-def _inner_error(basis: LandmarkBasis, solution: Solution, pixels: Floats) -> tuple[float, float]:
-    """Root mean square error of the inner landmarks, and the distance of the outer eye corners, px."""
-    mean, modes = basis.at(solution.landmark_vertices)
-    fitted = solution.camera.project(mean + (modes @ solution.coefficients).reshape(-1, 3))
-    squares = ((fitted - pixels)[INNER] ** 2).sum(axis=1)
-    right, left = np.where(np.isfinite(pixels), pixels, fitted)[list(OUTER_EYES)]
-    there = np.isfinite(squares)
-    rms = float(np.sqrt(squares[there].mean())) if there.any() else float("nan")
-    return rms, float(np.linalg.norm(left - right))

@@ -2,14 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
-__all__ = ["FitOptions"]
+from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS
+from toongeo.pipeline.fit.ibug_landmarks import SCHEMES
+from toongeo.pipeline.fit.robust_weights import KERNELS
+
+__all__ = ["FitOptions", "changed_options"]
 
 
 _MAY_BE_ZERO = ("jaw_weight", "jaw_tangent")
+_NUMBERS = (
+    "landmark_weight", "prior_weight", "identity_weight", "expression_weight", "jaw_weight", "jaw_tangent",
+    "max_deviation", "max_passes", "tolerance", "max_evaluations",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -38,12 +48,23 @@ class FitOptions:
         Relative change of the loss at which a pass stops.
     max_evaluations : int
         Of the loss, in one pass.
+    robust : {"geman-mcclure", "huber"} or None
+        Kernel of the landmark errors, as wide as their median asks: between the passes a point that lies far
+        off beside the others loses weight. None is least squares.
+    scheme : {"ibug68", "ibug51", "ibug49"}, (k,) int array, or a pair (faces (k,), weights (k, 3))
+        What the landmarks are: a known scheme, vertices of the model, or points in its triangles. With a table
+        all points count alike, none slides along the jaw, and the 68 vertices of the result are the model's own.
+    adjust : {"expression", "identity+expression"} or None
+        Bend the coefficients onto the landmarks in the end, without a prior: see `adjust_coefficients`.
+    refine : bool
+        Whether a regressor's coefficients are where the fit starts, or, if False, the answer; a pose that the
+        regressor does not give is found for its shape.
 
     Raises
     ------
     ValueError
         If a jaw weight is negative, another weight or a limit not positive, or one of them not finite. Without its
-        prior the fit has no unique answer.
+        prior the fit has no unique answer. If a name is not known.
     """
 
     landmark_weight: float = 1.0
@@ -56,15 +77,41 @@ class FitOptions:
     max_passes: int = 4
     tolerance: float = 1e-7
     max_evaluations: int = 2000
+    robust: str | None = "geman-mcclure"
+    scheme: Any = "ibug68"
+    adjust: str | None = None
+    refine: bool = True
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            counted = field.name in ("max_passes", "max_evaluations")
+        for name in _NUMBERS:
+            value = getattr(self, name)
+            counted = name in ("max_passes", "max_evaluations")
             if counted and not (isinstance(value, int) and value >= 1):
-                raise ValueError(f"{field.name}: expected an integer >= 1, got {value!r}")
-            if not (np.isfinite(value) and (value >= 0 if field.name in _MAY_BE_ZERO else value > 0)):
-                wanted = "a finite number >= 0" if field.name in _MAY_BE_ZERO else "a finite number > 0"
-                raise ValueError(f"{field.name}: expected {wanted}, got {value!r}")
+                raise ValueError(f"{name}: expected an integer >= 1, got {value!r}")
+            if not (np.isfinite(value) and (value >= 0 if name in _MAY_BE_ZERO else value > 0)):
+                wanted = "a finite number >= 0" if name in _MAY_BE_ZERO else "a finite number > 0"
+                raise ValueError(f"{name}: expected {wanted}, got {value!r}")
+        _known("robust", self.robust, (None, *KERNELS))
+        _known("adjust", self.adjust, (None, *ADJUSTMENTS))
+        named = isinstance(self.scheme, str)
+        if named:
+            _known("scheme", self.scheme, tuple(SCHEMES))
+        if self.adjust is not None and not named:
+            raise ValueError("adjust: expected a scheme by name to go with it, got a table")
+        _known("refine", self.refine, (True, False))
         if self.jaw_tangent > 1:
             raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")
+
+
+def _known(name: str, value: object, known: tuple[object, ...]) -> None:
+    if value not in known:
+        raise ValueError(f"{name}: expected one of {', '.join(map(repr, known))}, got {value!r}")
+
+
+def changed_options(options: FitOptions | None, changes: Mapping[str, Any]) -> FitOptions:
+    """``options``, or the defaults if None, with some fields changed; an unknown field lists the known ones."""
+    known = [field.name for field in fields(FitOptions)]
+    for name in changes:
+        if name not in known:
+            raise TypeError(f"{name}: no such option; known: {', '.join(known)}")
+    return replace(FitOptions() if options is None else options, **changes)

@@ -2,30 +2,38 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.ibug68 import INNER, PARTS
+from toongeo.model.ibug68 import INNER, OUTER_EYES, PARTS
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
 from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.inner_error import inner_error
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
+from toongeo.pipeline.fit.landmark_table import LandmarkTable
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.outlier_errors import NEIGHBOURS, outlier_errors
 from toongeo.pipeline.fit.prior_loss import PriorLoss
+from toongeo.pipeline.fit.robust_weights import robust_weights
+from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.pipeline.fit.total_loss import TotalLoss
 from toongeo.pipeline.fit.unknowns import Unknowns
+from toongeo.protocols import Coefficients, HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
-__all__ = ["LandmarkFit", "Solution"]
+__all__ = ["LandmarkFit", "Placement", "Solution"]
 
 Floats = NDArray[np.float64]
 
 _FEWEST = 6  # points from which the affine camera of the first pose is overdetermined
 # Box of the pose: a quarter turn from the first one, in each direction four times as large, 200 mm away.
+# Robust weights that change by less are settled; a point with less weight than _DISTRUST is an outlier.
+_SETTLED, _DISTRUST, _POSING_PASSES = 0.05, 0.1, 4
 _TURN, _LOG_SCALE, _SHIFT_MM = np.pi / 2, np.log(4.0), 200.0
 
 
@@ -34,7 +42,7 @@ class Solution:
     """Coefficients (c,) and camera at the minimum, the landmarks of that pose, and how it was reached."""
 
     coefficients: Floats
-    camera: ScaledOrthographicCamera
+    camera: HeadCamera
     landmark_vertices: NDArray[np.int64]
     landmark_loss: float
     prior_loss: float
@@ -43,6 +51,16 @@ class Solution:
     status: str
     passes: int
     evaluations: int
+    outliers: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """What a pass holds fixed: landmark vertices (68,), robust weights (k,), and ``w_r``."""
+
+    vertices: NDArray[np.int64]
+    trust: Floats
+    prior_weight: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +81,14 @@ class LandmarkFit:
     prior : PriorLoss
     bounds : two (n,) arrays
     options : FitOptions
+    own : mean (k, 3) and modes (3 k, c), or None
+        Landmarks of the caller's own table, which do not slide.
+    count : int
+        N of Eq. 4: a point that is missing counts.
+    neighbours : (k, k) bool
+    start : (n,) float
+    trust : (k,) float
+        Robust weights with which the first pass begins.
     """
 
     unknowns: Unknowns
@@ -74,18 +100,46 @@ class LandmarkFit:
     prior: PriorLoss
     bounds: tuple[Floats, Floats]
     options: FitOptions
+    own: tuple[Floats, Floats] | None
+    count: int
+    neighbours: NDArray[np.bool_]
+    start: Floats
+    trust: Floats
 
     @classmethod
-    def of(cls, model: MorphableModel, pixels: Floats, options: FitOptions) -> LandmarkFit:
-        """The problem for landmarks (68, 2) px; NaN rows are missing."""
+    def of(
+        cls,
+        model: MorphableModel,
+        pixels: Floats,
+        options: FitOptions,
+        guess: Coefficients | None = None,
+        table: LandmarkTable | None = None,
+    ) -> LandmarkFit:
+        """The problem for landmarks px, NaN rows missing, started at a guess or held there.
+
+        They are (68, 2), or (k, 2) with a table.
+        """
+        guess = Coefficients() if guess is None else guess
         unknowns = Unknowns(len(model.identity), len(model.expression))
         basis = landmark_basis(model)
         seen = np.flatnonzero(np.isfinite(pixels).all(axis=1))
         # The jaw's vertices depend on the pose, so the first pose leaves the jaw out while enough is left.
-        posing = np.intersect1d(seen, INNER)
-        posing = posing if len(posing) >= _FEWEST else seen
-        frame = canonical_frame(basis.at(basis.landmarks[posing])[0], pixels[posing])
-        points = np.full((68, 2), np.nan)
+        inner = np.intersect1d(seen, INNER)
+        posing = inner if table is None and len(inner) >= _FEWEST else seen
+        own = None if table is None else table.rows(model)
+        start = _start(guess, unknowns)
+        # The mean face sets the unit of the errors, whatever the guess: where a fit starts is not what it minimises.
+        face = basis.at(basis.landmarks[posing])[0] if own is None else own[0][posing]
+        trusted = _posing_trust(face, pixels[posing], options)
+        frame = canonical_frame(face, pixels[posing], trusted)
+        if guess.pose is not None:
+            posed = canonical_frame(face, guess.pose.project(face))
+            turned = replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0)
+            frame = turned if options.refine else posed
+        bounds = _bounds(model, unknowns, options.max_deviation)
+        trust = np.ones(len(pixels))
+        trust[posing] = trusted
+        points = np.full(pixels.shape, np.nan)
         points[seen] = frame.from_pixels(pixels[seen])
         return cls(
             unknowns=unknowns,
@@ -93,10 +147,15 @@ class LandmarkFit:
             frame=frame,
             seen=seen,
             points=points[seen],
-            weights=_weights(points, options)[seen] / basis.outer_eye_mm**2,
+            weights=_weights(points, options, table)[seen] / basis.outer_eye_mm**2,
             prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight),
-            bounds=_bounds(model, unknowns, options.max_deviation),
+            bounds=bounds if options.refine else _held(bounds, start, unknowns, guess.pose is not None),
             options=options,
+            own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
+            count=len(pixels),
+            neighbours=_neighbours(seen, table),
+            start=start,
+            trust=trust[seen],
         )
 
     def solve(self, algorithm: str) -> Solution:
@@ -104,13 +163,13 @@ class LandmarkFit:
 
         The prior assumes a landmark variance. What the first pass could not explain to that accuracy is a face
         outside the model, and its misfit is the better estimate of the variance: the prior then counts the more.
+        A few points that lie far off beside the others are no face outside the model: they lose their weight, in
+        the misfit and in the next pass.
         """
-        x = np.zeros(self.unknowns.size)
-        placed = self._visible(x)
+        x, placement = self.start, self.placement(self.start)
         passes = evaluations = 0
-        prior_weight = self.options.prior_weight
         while passes < self.options.max_passes:
-            loss = self.loss(placed, prior_weight)
+            loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
             minimum = nlopt_minimize(
                 loss,
                 x,
@@ -122,45 +181,132 @@ class LandmarkFit:
             )
             x = minimum.x
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
-            before, placed = placed, self._visible(x)
-            if passes == 1:
-                prior_weight *= max(1.0, loss.landmark(x)[0] / (prior_weight * len(placed)))
-            if np.array_equal(before, placed) and prior_weight == loss.prior_weight:
+            before, placement = placement, self.renewed(placement, x, first=passes == 1)
+            if self.settled(before, placement):
                 break
+        return self.solution(x, before, minimum.status, passes, evaluations)
+
+    def placement(self, x: Floats) -> Placement:
+        """What the first pass holds fixed."""
+        return Placement(self._visible(x), self.trust, self.options.prior_weight)
+
+    def renewed(self, placement: Placement, x: Floats, *, first: bool) -> Placement:
+        """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
+        loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
+        trust = self._trusted(loss.landmark.residuals(x))
+        prior_weight = placement.prior_weight
+        if first:
+            misfit = self.loss(placement.vertices, prior_weight, trust).landmark(x)[0]
+            prior_weight *= max(1.0, misfit / (prior_weight * self.count))
+        return Placement(self._visible(x), trust, prior_weight)
+
+    def settled(self, before: Placement, after: Placement) -> bool:
+        """Whether another pass would find the same."""
+        stayed = self.own is not None or np.array_equal(before.vertices, after.vertices)
+        believed = np.abs(after.trust - before.trust).max() <= _SETTLED
+        return bool(stayed and believed and before.prior_weight == after.prior_weight)
+
+    def solution(self, x: Floats, placement: Placement, status: str, passes: int, evaluations: int) -> Solution:
+        """The face at ``x``, where a pass with this placement ended."""
+        loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
         return Solution(
             coefficients=x[self.unknowns.shape],
             camera=self.frame.camera(x, self.unknowns),
-            landmark_vertices=placed,
+            landmark_vertices=self._visible(x),
             landmark_loss=loss.landmark(x)[0],
             prior_loss=loss.prior(x)[0],
             prior_weight=loss.prior_weight,
-            loss=minimum.value,
-            status=minimum.status,
+            loss=loss(x)[0],
+            status=status,
             passes=passes,
             evaluations=evaluations,
+            outliers=tuple(int(k) for k in self.seen[placement.trust < _DISTRUST]),
         )
 
-    def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float) -> TotalLoss:
-        """Eq. 3 with the landmarks (68,) at these vertices and this ``w_r``."""
-        mean, modes = self.basis.at(landmark_vertices[self.seen])
+    def error(self, solution: Solution, pixels: Floats) -> tuple[float, float]:
+        """Root mean square error of the inner landmarks, or of all in a table, and the outer-eye distance, px."""
+        mean, modes = self.basis.at(solution.landmark_vertices)
+        fitted = solution.camera.project(mean + (modes @ solution.coefficients).reshape(-1, 3))
+        if self.own is None:
+            return inner_error(fitted, pixels)
+        own = solution.camera.project(self.own[0] + (self.own[1] @ solution.coefficients).reshape(-1, 3))
+        right, left = fitted[list(OUTER_EYES)]
+        rms = np.sqrt(((own - pixels[self.seen]) ** 2).sum(axis=1).mean())
+        return float(rms), float(np.linalg.norm(left - right))
+
+    def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float, trust: Floats | None = None) -> TotalLoss:
+        """Eq. 3 with the landmarks (68,) at these vertices, this ``w_r``, and robust weights (k,)."""
+        mean, modes = self.basis.at(landmark_vertices[self.seen]) if self.own is None else self.own
         landmark = LandmarkLoss(
             unknowns=self.unknowns,
             points=self.points,
-            weights=self.weights,
-            count=len(landmark_vertices),
+            weights=self.weights if trust is None else trust[:, None, None] * self.weights,
+            count=self.count,
             mean=mean,
             modes=modes,
             rotation0=self.frame.rotation0,
         )
         return TotalLoss(landmark, self.prior, self.options.landmark_weight, prior_weight)
 
+    def _trusted(self, residuals: Floats) -> Floats:
+        """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
+        importance = np.linalg.norm(self.weights, ord=2, axis=(1, 2)) * self.basis.outer_eye_mm**2
+        reasons = outlier_errors(residuals, self.neighbours)
+        costs = np.einsum("cki,kij,ckj->ck", reasons, self.weights, reasons).min(axis=0)
+        squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
+        return robust_weights(squares, self.options.robust, self.count * self.options.prior_weight)
+
     def _visible(self, x: Floats) -> NDArray[np.int64]:
         return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
 
 
-def _weights(points: Floats, options: FitOptions) -> Floats:
-    """Weights (68, 2, 2) of Eq. 4."""
-    weights = np.tile(np.eye(2), (68, 1, 1))
+def _start(guess: Coefficients, unknowns: Unknowns) -> Floats:
+    """Unknowns (n,) at a guess, in the frame of its pose."""
+    x = np.zeros(unknowns.size)
+    for name, value in (("identity", guess.identity), ("expression", guess.expression)):
+        where = getattr(unknowns, name)
+        if value is None:
+            continue
+        if value.shape != x[where].shape:
+            raise ValueError(f"regressor: expected {name} of shape {x[where].shape}, got {value.shape}")
+        x[where] = value
+    return x
+
+
+def _held(bounds: tuple[Floats, Floats], start: Floats, unknowns: Unknowns, pose_too: bool) -> tuple[Floats, Floats]:
+    """Bounds that leave only the pose free, or nothing."""
+    held = slice(None) if pose_too else unknowns.shape
+    lower, upper = (bound.copy() for bound in bounds)
+    lower[held] = upper[held] = start[held]
+    return lower, upper
+
+
+def _posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats:
+    """Robust weights (k,) of the points that fix the first pose, from the misfit of the mean face."""
+    trust = np.ones(len(points))
+    for _ in range(_POSING_PASSES if options.robust else 0):
+        scale, rotation, translation = scaled_orthographic_pose(points, pixels, trust)
+        camera = ScaledOrthographicCamera(scale, rotation, translation)
+        squares = ((camera.project(points) - pixels) ** 2).sum(axis=1)
+        trust = robust_weights(squares, options.robust, 0.0)
+    return trust
+
+
+def _row_blocks(modes: Floats, points: NDArray[np.int64]) -> Floats:
+    """Modes (3 p, c) of some points out of those (3 k, c) of all."""
+    return modes.reshape(len(modes) // 3, 3, -1)[points].reshape(3 * len(points), -1)
+
+
+def _neighbours(seen: NDArray[np.int64], table: LandmarkTable | None) -> NDArray[np.bool_]:
+    """Which of the points that are there follow each other; a table does not tell."""
+    return NEIGHBOURS[np.ix_(seen, seen)] if table is None else np.zeros((len(seen), len(seen)), bool)
+
+
+def _weights(points: Floats, options: FitOptions, table: LandmarkTable | None) -> Floats:
+    """Weights (k, 2, 2) of Eq. 4."""
+    weights = np.tile(np.eye(2), (len(points), 1, 1))
+    if table is not None:
+        return weights
     weights[PARTS["jaw"]] = options.jaw_weight * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
     return weights
 

@@ -10,7 +10,7 @@ _FLIP = np.array([1.0, -1.0])
 
 
 def scaled_orthographic_pose(
-    points: NDArray[np.float64], pixels: NDArray[np.float64]
+    points: NDArray[np.float64], pixels: NDArray[np.float64], weights: NDArray[np.float64] | None = None
 ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
     """Scale, rotation and translation of the camera that sees ``points`` nearly at ``pixels``.
 
@@ -23,6 +23,8 @@ def scaled_orthographic_pose(
     points : (k, 3) float, mm, model frame
         At least four, not in one plane.
     pixels : (k, 2) float, px (x right, y down)
+    weights : (k,) float >= 0, optional
+        Of the squared errors; all alike if None.
 
     Returns
     -------
@@ -42,8 +44,10 @@ def scaled_orthographic_pose(
     model to edges", ACCV workshops 2016.
     """
     upright = pixels * _FLIP
-    centre3, centre2 = points.mean(axis=0), upright.mean(axis=0)
-    M = np.linalg.lstsq(points - centre3, upright - centre2, rcond=None)[0].T
+    w = np.ones(len(points)) if weights is None else weights
+    centre3, centre2 = w @ points / w.sum(), w @ upright / w.sum()
+    root = np.sqrt(w)[:, None]
+    M = np.linalg.lstsq(root * (points - centre3), root * (upright - centre2), rcond=None)[0].T
     U, s, Vt = np.linalg.svd(M, full_matrices=False)
     if not s[1] > _FLATTEST * s[0]:
         raise ValueError(

@@ -1,0 +1,58 @@
+"""Several pictures of one person, fitted with one identity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from toongeo.pipeline.fit.joint_loss import JointLoss
+from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
+from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+
+__all__ = ["solve_together"]
+
+
+def solve_together(problems: Sequence[LandmarkFit], algorithm: str) -> list[Solution]:
+    """Solutions with one identity for problems with the same model and options.
+
+    The passes are those of `LandmarkFit.solve`, in step: all pictures are minimised as one, and then the jaw
+    points and the robust weights of each are renewed. Status, passes and evaluations are those of all.
+    """
+    options = problems[0].options
+    placements = [problem.placement(problem.start) for problem in problems]
+    parts = [problem.start for problem in problems]
+    passes = evaluations = 0
+    while passes < options.max_passes:
+        loss = JointLoss(
+            [
+                problem.loss(placed.vertices, placed.prior_weight, placed.trust)
+                for problem, placed in zip(problems, placements, strict=True)
+            ]
+        )
+        x = loss.joined(parts)
+        minimum = nlopt_minimize(
+            loss,
+            x,
+            bounds=(
+                loss.joined([problem.bounds[0] for problem in problems]),
+                loss.joined([problem.bounds[1] for problem in problems]),
+            ),
+            scale=1 / np.sqrt(loss.curvature(x)),
+            algorithm=algorithm,
+            tolerance=options.tolerance,
+            max_evaluations=options.max_evaluations,
+        )
+        parts = [loss.part(minimum.x, k) for k in range(len(problems))]
+        passes, evaluations = passes + 1, evaluations + minimum.evaluations
+        before = placements
+        placements = [
+            problem.renewed(placed, part, first=passes == 1)
+            for problem, placed, part in zip(problems, before, parts, strict=True)
+        ]
+        if all(p.settled(*pair) for p, *pair in zip(problems, before, placements, strict=True)):
+            break
+    return [
+        problem.solution(part, placed, minimum.status, passes, evaluations)
+        for problem, part, placed in zip(problems, parts, before, strict=True)
+    ]
