@@ -133,9 +133,8 @@ def fit_3dmm(
     if regressor is None and not options.refine:
         raise ValueError("refine: expected a regressor whose answer is not to be refined, got none")
     together = isinstance(img, list)
-    tasks = [
-        _task(*one, model, options, regressor) for one in (_pairs(img, landmarks) if together else [(img, landmarks)])
-    ]
+    pictures = _pairs(img, landmarks) if together else [(img, landmarks)]
+    tasks = [_task(*picture, model, options, regressor) for picture in pictures]
     with one_thread():
         if together:
             solutions = solve_together([task.problem for task in tasks], algorithm)
@@ -144,9 +143,10 @@ def fit_3dmm(
         seconds = time.perf_counter() - started
         fits = [_face(task, solution, algorithm, seconds) for task, solution in zip(tasks, solutions, strict=True)]
         if options.adjust is not None:
-            limits = {"algorithm": algorithm, "max_evaluations": options.max_evaluations}
             fits = [
-                adjust_coefficients(fit, task.pixels, options.adjust, **limits)
+                adjust_coefficients(
+                    fit, task.pixels, options.adjust, algorithm=algorithm, max_evaluations=options.max_evaluations
+                )
                 for fit, task in zip(fits, tasks, strict=True)
             ]
     return fits if together else fits[0]
