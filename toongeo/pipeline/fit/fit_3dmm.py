@@ -68,7 +68,8 @@ def fit_3dmm(
     """Pose, identity and expression of a morphable model from landmarks.
 
     Minimises ``w_l L_lan + w_r L_reg`` (Eq. 3 without the photometric term): the landmark loss of Eq. 4
-    and the prior of Eq. 6. The camera is scaled orthographic. Jaw points slide along the contour lines of
+    and the prior of Eq. 6. The camera is scaled orthographic, or, with
+    ``camera="perspective"``, has a focal length that is given or found. Jaw points slide along the contour lines of
     the model: they are placed for the pose, held while the loss is minimised, and placed anew, until they
     stay.
 
@@ -186,7 +187,7 @@ def _task(
         pixels = table_landmarks(landmarks, table)
     guess = Coefficients() if regressor is None else regressor(img, pixels.copy())
     with one_thread():
-        problem = LandmarkFit.of(model, pixels, options, guess, table)
+        problem = LandmarkFit.of(model, pixels, options, guess, table, _centre(image_shape))
     return _Task(model, problem, pixels, guess, warnings)
 
 
@@ -219,6 +220,10 @@ def _face(task: _Task, solution: Solution, algorithm: str, seconds: float) -> Fa
         light=task.guess.light,
         report=report,
     )
+
+
+def _centre(image_shape: tuple[int, ...] | None) -> NDArray[np.float64] | None:
+    return None if image_shape is None else np.array([image_shape[1] - 1, image_shape[0] - 1]) / 2
 
 
 def _image_shape(img: NDArray[np.uint8] | None) -> tuple[int, ...] | None:

@@ -34,6 +34,8 @@ _FEWEST = 6  # points from which the affine camera of the first pose is overdete
 # Box of the pose: a quarter turn from the first one, in each direction four times as large, 200 mm away.
 # Robust weights that change by less are settled; a point with less weight than _DISTRUST is an outlier.
 _SETTLED, _DISTRUST, _POSING_PASSES = 0.05, 0.1, 4
+# Inverse distances of a viewer whose focal length is not known, 1/mm: least, first, greatest.
+_NEARNESS = (1 / 5000, 1 / 1000, 1 / 350)
 _TURN, _LOG_SCALE, _SHIFT_MM = np.pi / 2, np.log(4.0), 200.0
 
 
@@ -85,6 +87,8 @@ class LandmarkFit:
         Landmarks of the caller's own table, which do not slide.
     count : int
         N of Eq. 4: a point that is missing counts.
+    principal_point : (2,) float, px
+        Counts in perspective only.
     neighbours : (k, k) bool
     start : (n,) float
     trust : (k,) float
@@ -102,6 +106,7 @@ class LandmarkFit:
     options: FitOptions
     own: tuple[Floats, Floats] | None
     count: int
+    principal_point: Floats
     neighbours: NDArray[np.bool_]
     start: Floats
     trust: Floats
@@ -114,13 +119,14 @@ class LandmarkFit:
         options: FitOptions,
         guess: Coefficients | None = None,
         table: LandmarkTable | None = None,
+        image_centre: Floats | None = None,
     ) -> LandmarkFit:
         """The problem for landmarks px, NaN rows missing, started at a guess or held there.
 
         They are (68, 2), or (k, 2) with a table.
         """
         guess = Coefficients() if guess is None else guess
-        unknowns = Unknowns(len(model.identity), len(model.expression))
+        unknowns = Unknowns(len(model.identity), len(model.expression), options.camera == "perspective")
         basis = landmark_basis(model)
         seen = np.flatnonzero(np.isfinite(pixels).all(axis=1))
         # The jaw's vertices depend on the pose, so the first pose leaves the jaw out while enough is left.
@@ -136,7 +142,14 @@ class LandmarkFit:
             posed = canonical_frame(face, guess.pose.project(face))
             turned = replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0)
             frame = turned if options.refine else posed
+        principal_point = _principal_point(options, image_centre, frame)
         bounds = _bounds(model, unknowns, options.max_deviation)
+        if unknowns.perspective:
+            start[unknowns.translation] = -frame.from_pixels(principal_point)
+            for bound in bounds:
+                bound[unknowns.translation] += start[unknowns.translation]
+            nearness = _NEARNESS if options.focal_px is None else (frame.scale / options.focal_px,) * 3
+            bounds[0][-1], start[-1], bounds[1][-1] = nearness
         trust = np.ones(len(pixels))
         trust[posing] = trusted
         points = np.full(pixels.shape, np.nan)
@@ -153,6 +166,7 @@ class LandmarkFit:
             options=options,
             own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
             count=len(pixels),
+            principal_point=principal_point,
             neighbours=_neighbours(seen, table),
             start=start,
             trust=trust[seen],
@@ -211,7 +225,7 @@ class LandmarkFit:
         loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
         return Solution(
             coefficients=x[self.unknowns.shape],
-            camera=self.frame.camera(x, self.unknowns),
+            camera=self.frame.camera(x, self.unknowns, self.principal_point),
             landmark_vertices=self._visible(x),
             landmark_loss=loss.landmark(x)[0],
             prior_loss=loss.prior(x)[0],
@@ -245,6 +259,7 @@ class LandmarkFit:
             mean=mean,
             modes=modes,
             rotation0=self.frame.rotation0,
+            principal=self.frame.from_pixels(self.principal_point),
         )
         return TotalLoss(landmark, self.prior, self.options.landmark_weight, prior_weight)
 
@@ -271,6 +286,13 @@ def _start(guess: Coefficients, unknowns: Unknowns) -> Floats:
             raise ValueError(f"regressor: expected {name} of shape {x[where].shape}, got {value.shape}")
         x[where] = value
     return x
+
+
+def _principal_point(options: FitOptions, image_centre: Floats | None, frame: CanonicalFrame) -> Floats:
+    """The given one, or the middle of the picture, or that of the face when there is no picture, px."""
+    if options.principal_point is not None:
+        return np.array(options.principal_point, np.float64)
+    return frame.origin if image_centre is None else image_centre
 
 
 def _held(bounds: tuple[Floats, Floats], start: Floats, unknowns: Unknowns, pose_too: bool) -> tuple[Floats, Floats]:
