@@ -206,11 +206,12 @@ class LandmarkFit:
 
     def renewed(self, placement: Placement, x: Floats, *, first: bool) -> Placement:
         """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
-        loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
-        trust = self._trusted(loss.landmark.residuals(x))
+        loss = self.loss(placement.vertices, placement.prior_weight)
+        errors = loss.landmark.residuals(x)
+        trust = self._trusted(errors)
         prior_weight = placement.prior_weight
         if first:
-            misfit = self.loss(placement.vertices, prior_weight, trust).landmark(x)[0]
+            misfit = float((trust * np.einsum("ki,kij,kj->k", errors, self.weights, errors)).sum()) / self.count
             prior_weight *= max(1.0, misfit / (prior_weight * self.count))
         return Placement(self._visible(x), trust, prior_weight)
 
@@ -265,7 +266,10 @@ class LandmarkFit:
 
     def _trusted(self, residuals: Floats) -> Floats:
         """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
-        importance = np.linalg.norm(self.weights, ord=2, axis=(1, 2)) * self.basis.outer_eye_mm**2
+        W = self.weights  # its larger eigenvalue is the weight across an outline, or in all directions
+        half = (W[:, 0, 0] - W[:, 1, 1]) / 2
+        importance = (W[:, 0, 0] + W[:, 1, 1]) / 2 + np.sqrt(half**2 + W[:, 0, 1] ** 2)
+        importance *= self.basis.outer_eye_mm**2
         reasons = outlier_errors(residuals, self.neighbours)
         costs = np.einsum("cki,kij,ckj->ck", reasons, self.weights, reasons).min(axis=0)
         squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
@@ -310,7 +314,9 @@ def _posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats
         scale, rotation, translation = scaled_orthographic_pose(points, pixels, trust)
         camera = ScaledOrthographicCamera(scale, rotation, translation)
         squares = ((camera.project(points) - pixels) ** 2).sum(axis=1)
-        trust = robust_weights(squares, options.robust, 0.0)
+        before, trust = trust, robust_weights(squares, options.robust, 0.0)
+        if np.abs(trust - before).max() <= _SETTLED:
+            break
     return trust
 
 
