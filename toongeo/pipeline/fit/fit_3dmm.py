@@ -18,9 +18,10 @@ from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
-from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
+from toongeo.pipeline.fit.landmark_fit import LandmarkFit
 from toongeo.pipeline.fit.landmark_table import landmark_table, table_landmarks
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
+from toongeo.pipeline.fit.solution import Solution
 from toongeo.pipeline.fit.solve_together import solve_together
 from toongeo.protocols import Coefficients, Regressor
 

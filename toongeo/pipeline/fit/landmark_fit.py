@@ -12,6 +12,7 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
 from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.fit_start import held_bounds, posing_trust, principal_point_of, start_vector
 from toongeo.pipeline.fit.inner_error import inner_error
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
@@ -19,50 +20,22 @@ from toongeo.pipeline.fit.landmark_table import LandmarkTable
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.outlier_errors import NEIGHBOURS, outlier_errors
 from toongeo.pipeline.fit.prior_loss import PriorLoss
-from toongeo.pipeline.fit.robust_weights import robust_weights
-from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
+from toongeo.pipeline.fit.robust_weights import SETTLED, robust_weights
+from toongeo.pipeline.fit.solution import Placement, Solution
 from toongeo.pipeline.fit.total_loss import TotalLoss
 from toongeo.pipeline.fit.unknowns import Unknowns
-from toongeo.protocols import Coefficients, HeadCamera
-from toongeo.render.camera import ScaledOrthographicCamera
+from toongeo.protocols import Coefficients
 
-__all__ = ["LandmarkFit", "Placement", "Solution"]
+__all__ = ["LandmarkFit"]
 
 Floats = NDArray[np.float64]
 
 _FEWEST = 6  # points from which the affine camera of the first pose is overdetermined
 # Box of the pose: a quarter turn from the first one, in each direction four times as large, 200 mm away.
-# Robust weights that change by less are settled; a point with less weight than _DISTRUST is an outlier.
-_SETTLED, _DISTRUST, _POSING_PASSES = 0.05, 0.1, 4
+_DISTRUST = 0.1  # a point with less robust weight is called an outlier
 # Inverse distances of a viewer whose focal length is not known, 1/mm: least, first, greatest.
 _NEARNESS = (1 / 5000, 1 / 1000, 1 / 350)
 _TURN, _LOG_SCALE, _SHIFT_MM = np.pi / 2, np.log(4.0), 200.0
-
-
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """Coefficients (c,) and camera at the minimum, the landmarks of that pose, and how it was reached."""
-
-    coefficients: Floats
-    camera: HeadCamera
-    landmark_vertices: NDArray[np.int64]
-    landmark_loss: float
-    prior_loss: float
-    prior_weight: float
-    loss: float
-    status: str
-    passes: int
-    evaluations: int
-    outliers: tuple[int, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Placement:
-    """What a pass holds fixed: landmark vertices (68,), robust weights (k,), and ``w_r``."""
-
-    vertices: NDArray[np.int64]
-    trust: Floats
-    prior_weight: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,16 +106,16 @@ class LandmarkFit:
         inner = np.intersect1d(seen, INNER)
         posing = inner if table is None and len(inner) >= _FEWEST else seen
         own = None if table is None else table.rows(model)
-        start = _start(guess, unknowns)
+        start = start_vector(guess, unknowns)
         # The mean face sets the unit of the errors, whatever the guess: where a fit starts is not what it minimises.
         face = basis.at(basis.landmarks[posing])[0] if own is None else own[0][posing]
-        trusted = _posing_trust(face, pixels[posing], options)
+        trusted = posing_trust(face, pixels[posing], options)
         frame = canonical_frame(face, pixels[posing], trusted)
         if guess.pose is not None:
             posed = canonical_frame(face, guess.pose.project(face))
             turned = replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0)
             frame = turned if options.refine else posed
-        principal_point = _principal_point(options, image_centre, frame)
+        principal_point = principal_point_of(options, image_centre, frame)
         bounds = _bounds(model, unknowns, options.max_deviation)
         if unknowns.perspective:
             start[unknowns.translation] = -frame.from_pixels(principal_point)
@@ -162,7 +135,7 @@ class LandmarkFit:
             points=points[seen],
             weights=_weights(points, options, table)[seen] / basis.outer_eye_mm**2,
             prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight),
-            bounds=bounds if options.refine else _held(bounds, start, unknowns, guess.pose is not None),
+            bounds=bounds if options.refine else held_bounds(bounds, start, unknowns, guess.pose is not None),
             options=options,
             own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
             count=len(pixels),
@@ -218,7 +191,7 @@ class LandmarkFit:
     def settled(self, before: Placement, after: Placement) -> bool:
         """Whether another pass would find the same."""
         stayed = self.own is not None or np.array_equal(before.vertices, after.vertices)
-        believed = np.abs(after.trust - before.trust).max() <= _SETTLED
+        believed = np.abs(after.trust - before.trust).max() <= SETTLED
         return bool(stayed and believed and before.prior_weight == after.prior_weight)
 
     def solution(self, x: Floats, placement: Placement, status: str, passes: int, evaluations: int) -> Solution:
@@ -277,47 +250,6 @@ class LandmarkFit:
 
     def _visible(self, x: Floats) -> NDArray[np.int64]:
         return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
-
-
-def _start(guess: Coefficients, unknowns: Unknowns) -> Floats:
-    """Unknowns (n,) at a guess, in the frame of its pose."""
-    x = np.zeros(unknowns.size)
-    for name, value in (("identity", guess.identity), ("expression", guess.expression)):
-        where = getattr(unknowns, name)
-        if value is None:
-            continue
-        if value.shape != x[where].shape:
-            raise ValueError(f"regressor: expected {name} of shape {x[where].shape}, got {value.shape}")
-        x[where] = value
-    return x
-
-
-def _principal_point(options: FitOptions, image_centre: Floats | None, frame: CanonicalFrame) -> Floats:
-    """The given one, or the middle of the picture, or that of the face when there is no picture, px."""
-    if options.principal_point is not None:
-        return np.array(options.principal_point, np.float64)
-    return frame.origin if image_centre is None else image_centre
-
-
-def _held(bounds: tuple[Floats, Floats], start: Floats, unknowns: Unknowns, pose_too: bool) -> tuple[Floats, Floats]:
-    """Bounds that leave only the pose free, or nothing."""
-    held = slice(None) if pose_too else unknowns.shape
-    lower, upper = (bound.copy() for bound in bounds)
-    lower[held] = upper[held] = start[held]
-    return lower, upper
-
-
-def _posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats:
-    """Robust weights (k,) of the points that fix the first pose, from the misfit of the mean face."""
-    trust = np.ones(len(points))
-    for _ in range(_POSING_PASSES if options.robust else 0):
-        scale, rotation, translation = scaled_orthographic_pose(points, pixels, trust)
-        camera = ScaledOrthographicCamera(scale, rotation, translation)
-        squares = ((camera.project(points) - pixels) ** 2).sum(axis=1)
-        before, trust = trust, robust_weights(squares, options.robust, 0.0)
-        if np.abs(trust - before).max() <= _SETTLED:
-            break
-    return trust
 
 
 def _row_blocks(modes: Floats, points: NDArray[np.int64]) -> Floats:
