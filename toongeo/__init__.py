@@ -28,6 +28,7 @@ __getattr__, __dir__, __all__ = attach(
         "default_model": "model",
         "MorphableModel": "model",
         "ScaledOrthographicCamera": "render",
+        "PerspectiveCamera": "render",
         "render_mesh": "render",
         "laplacian_align": "geometry",
         "LaplacianAligner": "geometry",

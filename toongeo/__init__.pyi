@@ -29,6 +29,7 @@ from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
 from toongeo.protocols import Coefficients as Coefficients
+from toongeo.render import PerspectiveCamera as PerspectiveCamera
 from toongeo.render import ScaledOrthographicCamera as ScaledOrthographicCamera
 from toongeo.render import render_mesh as render_mesh
 

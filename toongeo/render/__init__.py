@@ -2,6 +2,7 @@
 
 from toongeo.render.camera import ScaledOrthographicCamera
 from toongeo.render.interpolate import interpolate
+from toongeo.render.perspective_camera import PerspectiveCamera
 from toongeo.render.rasterize import Fragments, rasterize
 from toongeo.render.render_mesh import render_mesh
 from toongeo.render.sample_image import sample_image
@@ -13,6 +14,7 @@ from toongeo.render.uv_to_px import uv_to_px
 
 __all__ = [
     "Fragments",
+    "PerspectiveCamera",
     "ScaledOrthographicCamera",
     "Surface",
     "interpolate",

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from toongeo.pipeline.fit.rotation import rotation_matrix
 from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.pipeline.fit.unknowns import Unknowns
+from toongeo.protocols import HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
+from toongeo.render.perspective_camera import PerspectiveCamera
 
 __all__ = ["CanonicalFrame", "canonical_frame"]
 
@@ -48,8 +50,13 @@ class CanonicalFrame:
         """Rotation (3, 3) from the model to this frame for the unknowns ``x``."""
         return rotation_matrix(x[unknowns.rotation]) @ self.rotation0
 
-    def camera(self, x: Floats, unknowns: Unknowns) -> ScaledOrthographicCamera:
-        """Camera of the picture for the unknowns ``x``."""
+    def camera(self, x: Floats, unknowns: Unknowns, principal_point: Floats) -> HeadCamera:
+        """Camera of the picture for the unknowns ``x``; the principal point, px, counts in perspective only."""
+        if unknowns.perspective:
+            growth, near = np.exp(x[unknowns.log_scale]), x[unknowns.inverse_distance]
+            centre = np.array([*(x[unknowns.translation] / growth), -1 / (near * growth)])
+            rotation = self.roll @ self.rotation(x, unknowns)
+            return PerspectiveCamera(float(self.scale / near), rotation, self.roll @ centre, principal_point)
         shift = self.scale * (self.roll[:2, :2] @ x[unknowns.translation]) * _FLIP
         return ScaledOrthographicCamera(
             float(self.scale * np.exp(x[unknowns.log_scale])),

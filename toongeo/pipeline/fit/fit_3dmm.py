@@ -18,9 +18,10 @@ from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
-from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
+from toongeo.pipeline.fit.landmark_fit import LandmarkFit
 from toongeo.pipeline.fit.landmark_table import landmark_table, table_landmarks
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
+from toongeo.pipeline.fit.solution import Solution
 from toongeo.pipeline.fit.solve_together import solve_together
 from toongeo.protocols import Coefficients, Regressor
 
@@ -68,7 +69,8 @@ def fit_3dmm(
     """Pose, identity and expression of a morphable model from landmarks.
 
     Minimises ``w_l L_lan + w_r L_reg`` (Eq. 3 without the photometric term): the landmark loss of Eq. 4
-    and the prior of Eq. 6. The camera is scaled orthographic. Jaw points slide along the contour lines of
+    and the prior of Eq. 6. The camera is scaled orthographic, or, with
+    ``camera="perspective"``, has a focal length that is given or found. Jaw points slide along the contour lines of
     the model: they are placed for the pose, held while the loss is minimised, and placed anew, until they
     stay.
 
@@ -133,9 +135,8 @@ def fit_3dmm(
     if regressor is None and not options.refine:
         raise ValueError("refine: expected a regressor whose answer is not to be refined, got none")
     together = isinstance(img, list)
-    tasks = [
-        _task(*one, model, options, regressor) for one in (_pairs(img, landmarks) if together else [(img, landmarks)])
-    ]
+    pictures = _pairs(img, landmarks) if together else [(img, landmarks)]
+    tasks = [_task(*picture, model, options, regressor) for picture in pictures]
     with one_thread():
         if together:
             solutions = solve_together([task.problem for task in tasks], algorithm)
@@ -144,9 +145,10 @@ def fit_3dmm(
         seconds = time.perf_counter() - started
         fits = [_face(task, solution, algorithm, seconds) for task, solution in zip(tasks, solutions, strict=True)]
         if options.adjust is not None:
-            limits = {"algorithm": algorithm, "max_evaluations": options.max_evaluations}
             fits = [
-                adjust_coefficients(fit, task.pixels, options.adjust, **limits)
+                adjust_coefficients(
+                    fit, task.pixels, options.adjust, algorithm=algorithm, max_evaluations=options.max_evaluations
+                )
                 for fit, task in zip(fits, tasks, strict=True)
             ]
     return fits if together else fits[0]
@@ -186,7 +188,7 @@ def _task(
         pixels = table_landmarks(landmarks, table)
     guess = Coefficients() if regressor is None else regressor(img, pixels.copy())
     with one_thread():
-        problem = LandmarkFit.of(model, pixels, options, guess, table)
+        problem = LandmarkFit.of(model, pixels, options, guess, table, _centre(image_shape))
     return _Task(model, problem, pixels, guess, warnings)
 
 
@@ -219,6 +221,10 @@ def _face(task: _Task, solution: Solution, algorithm: str, seconds: float) -> Fa
         light=task.guess.light,
         report=report,
     )
+
+
+def _centre(image_shape: tuple[int, ...] | None) -> NDArray[np.float64] | None:
+    return None if image_shape is None else np.array([image_shape[1] - 1, image_shape[0] - 1]) / 2
 
 
 def _image_shape(img: NDArray[np.uint8] | None) -> tuple[int, ...] | None:

@@ -16,6 +16,7 @@ __all__ = ["FitOptions", "changed_options"]
 
 
 _MAY_BE_ZERO = ("jaw_weight", "jaw_tangent")
+CAMERAS = ("orthographic", "perspective")
 _NUMBERS = (
     "landmark_weight", "prior_weight", "identity_weight", "expression_weight", "jaw_weight", "jaw_tangent",
     "max_deviation", "max_passes", "tolerance", "max_evaluations",
@@ -51,6 +52,12 @@ class FitOptions:
     robust : {"geman-mcclure", "huber"} or None
         Kernel of the landmark errors, as wide as their median asks: between the passes a point that lies far
         off beside the others loses weight. None is least squares.
+    camera : {"orthographic", "perspective"}
+    focal_px : float or None
+        Focal length of the perspective camera in pixels; None: it is estimated, with the head between 0.35 and
+        5 m away. Landmarks tell it badly, so give it where it is known.
+    principal_point : (x, y) px or None
+        Of the perspective camera; None: the middle of the picture, or of the face when there is no picture.
     scheme : {"ibug68", "ibug51", "ibug49"}, (k,) int array, or a pair (faces (k,), weights (k, 3))
         What the landmarks are: a known scheme, vertices of the model, or points in its triangles. With a table
         all points count alike, none slides along the jaw, and the 68 vertices of the result are the model's own.
@@ -78,6 +85,9 @@ class FitOptions:
     tolerance: float = 1e-7
     max_evaluations: int = 2000
     robust: str | None = "geman-mcclure"
+    camera: str = "orthographic"
+    focal_px: float | None = None
+    principal_point: tuple[float, float] | None = None
     scheme: Any = "ibug68"
     adjust: str | None = None
     refine: bool = True
@@ -93,6 +103,8 @@ class FitOptions:
                 raise ValueError(f"{name}: expected {wanted}, got {value!r}")
         _known("robust", self.robust, (None, *KERNELS))
         _known("adjust", self.adjust, (None, *ADJUSTMENTS))
+        _known("camera", self.camera, CAMERAS)
+        self._check_lens()
         named = isinstance(self.scheme, str)
         if named:
             _known("scheme", self.scheme, tuple(SCHEMES))
@@ -101,6 +113,16 @@ class FitOptions:
         _known("refine", self.refine, (True, False))
         if self.jaw_tangent > 1:
             raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")
+
+    def _check_lens(self) -> None:
+        for name in ("focal_px", "principal_point"):
+            if getattr(self, name) is not None and self.camera != "perspective":
+                raise ValueError(f"{name}: expected camera='perspective' to go with it, got {self.camera!r}")
+        if self.focal_px is not None and not (np.isfinite(self.focal_px) and self.focal_px > 0):
+            raise ValueError(f"focal_px: expected a finite number > 0 or None, got {self.focal_px!r}")
+        point = self.principal_point
+        if point is not None and (np.shape(point) != (2,) or not np.isfinite(point).all()):
+            raise ValueError(f"principal_point: expected 2 finite numbers (x, y) in px or None, got {point!r}")
 
 
 def _known(name: str, value: object, known: tuple[object, ...]) -> None:

@@ -12,6 +12,7 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
 from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.fit_start import held_bounds, posing_trust, principal_point_of, start_vector
 from toongeo.pipeline.fit.inner_error import inner_error
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
@@ -19,48 +20,22 @@ from toongeo.pipeline.fit.landmark_table import LandmarkTable
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.outlier_errors import NEIGHBOURS, outlier_errors
 from toongeo.pipeline.fit.prior_loss import PriorLoss
-from toongeo.pipeline.fit.robust_weights import robust_weights
-from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
+from toongeo.pipeline.fit.robust_weights import SETTLED, robust_weights
+from toongeo.pipeline.fit.solution import Placement, Solution
 from toongeo.pipeline.fit.total_loss import TotalLoss
 from toongeo.pipeline.fit.unknowns import Unknowns
-from toongeo.protocols import Coefficients, HeadCamera
-from toongeo.render.camera import ScaledOrthographicCamera
+from toongeo.protocols import Coefficients
 
-__all__ = ["LandmarkFit", "Placement", "Solution"]
+__all__ = ["LandmarkFit"]
 
 Floats = NDArray[np.float64]
 
 _FEWEST = 6  # points from which the affine camera of the first pose is overdetermined
 # Box of the pose: a quarter turn from the first one, in each direction four times as large, 200 mm away.
-# Robust weights that change by less are settled; a point with less weight than _DISTRUST is an outlier.
-_SETTLED, _DISTRUST, _POSING_PASSES = 0.05, 0.1, 4
+_DISTRUST = 0.1  # a point with less robust weight is called an outlier
+# Inverse distances of a viewer whose focal length is not known, 1/mm: least, first, greatest.
+_NEARNESS = (1 / 5000, 1 / 1000, 1 / 350)
 _TURN, _LOG_SCALE, _SHIFT_MM = np.pi / 2, np.log(4.0), 200.0
-
-
-@dataclass(frozen=True, eq=False)
-class Solution:
-    """Coefficients (c,) and camera at the minimum, the landmarks of that pose, and how it was reached."""
-
-    coefficients: Floats
-    camera: HeadCamera
-    landmark_vertices: NDArray[np.int64]
-    landmark_loss: float
-    prior_loss: float
-    prior_weight: float
-    loss: float
-    status: str
-    passes: int
-    evaluations: int
-    outliers: tuple[int, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Placement:
-    """What a pass holds fixed: landmark vertices (68,), robust weights (k,), and ``w_r``."""
-
-    vertices: NDArray[np.int64]
-    trust: Floats
-    prior_weight: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +60,8 @@ class LandmarkFit:
         Landmarks of the caller's own table, which do not slide.
     count : int
         N of Eq. 4: a point that is missing counts.
+    principal_point : (2,) float, px
+        Counts in perspective only.
     neighbours : (k, k) bool
     start : (n,) float
     trust : (k,) float
@@ -102,6 +79,7 @@ class LandmarkFit:
     options: FitOptions
     own: tuple[Floats, Floats] | None
     count: int
+    principal_point: Floats
     neighbours: NDArray[np.bool_]
     start: Floats
     trust: Floats
@@ -114,29 +92,37 @@ class LandmarkFit:
         options: FitOptions,
         guess: Coefficients | None = None,
         table: LandmarkTable | None = None,
+        image_centre: Floats | None = None,
     ) -> LandmarkFit:
         """The problem for landmarks px, NaN rows missing, started at a guess or held there.
 
         They are (68, 2), or (k, 2) with a table.
         """
         guess = Coefficients() if guess is None else guess
-        unknowns = Unknowns(len(model.identity), len(model.expression))
+        unknowns = Unknowns(len(model.identity), len(model.expression), options.camera == "perspective")
         basis = landmark_basis(model)
         seen = np.flatnonzero(np.isfinite(pixels).all(axis=1))
         # The jaw's vertices depend on the pose, so the first pose leaves the jaw out while enough is left.
         inner = np.intersect1d(seen, INNER)
         posing = inner if table is None and len(inner) >= _FEWEST else seen
         own = None if table is None else table.rows(model)
-        start = _start(guess, unknowns)
+        start = start_vector(guess, unknowns)
         # The mean face sets the unit of the errors, whatever the guess: where a fit starts is not what it minimises.
         face = basis.at(basis.landmarks[posing])[0] if own is None else own[0][posing]
-        trusted = _posing_trust(face, pixels[posing], options)
+        trusted = posing_trust(face, pixels[posing], options)
         frame = canonical_frame(face, pixels[posing], trusted)
         if guess.pose is not None:
             posed = canonical_frame(face, guess.pose.project(face))
             turned = replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0)
             frame = turned if options.refine else posed
+        principal_point = principal_point_of(options, image_centre, frame)
         bounds = _bounds(model, unknowns, options.max_deviation)
+        if unknowns.perspective:
+            start[unknowns.translation] = -frame.from_pixels(principal_point)
+            for bound in bounds:
+                bound[unknowns.translation] += start[unknowns.translation]
+            nearness = _NEARNESS if options.focal_px is None else (frame.scale / options.focal_px,) * 3
+            bounds[0][-1], start[-1], bounds[1][-1] = nearness
         trust = np.ones(len(pixels))
         trust[posing] = trusted
         points = np.full(pixels.shape, np.nan)
@@ -149,10 +135,11 @@ class LandmarkFit:
             points=points[seen],
             weights=_weights(points, options, table)[seen] / basis.outer_eye_mm**2,
             prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight),
-            bounds=bounds if options.refine else _held(bounds, start, unknowns, guess.pose is not None),
+            bounds=bounds if options.refine else held_bounds(bounds, start, unknowns, guess.pose is not None),
             options=options,
             own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
             count=len(pixels),
+            principal_point=principal_point,
             neighbours=_neighbours(seen, table),
             start=start,
             trust=trust[seen],
@@ -192,18 +179,19 @@ class LandmarkFit:
 
     def renewed(self, placement: Placement, x: Floats, *, first: bool) -> Placement:
         """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
-        loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
-        trust = self._trusted(loss.landmark.residuals(x))
+        loss = self.loss(placement.vertices, placement.prior_weight)
+        errors = loss.landmark.residuals(x)
+        trust = self._trusted(errors)
         prior_weight = placement.prior_weight
         if first:
-            misfit = self.loss(placement.vertices, prior_weight, trust).landmark(x)[0]
+            misfit = float((trust * np.einsum("ki,kij,kj->k", errors, self.weights, errors)).sum()) / self.count
             prior_weight *= max(1.0, misfit / (prior_weight * self.count))
         return Placement(self._visible(x), trust, prior_weight)
 
     def settled(self, before: Placement, after: Placement) -> bool:
         """Whether another pass would find the same."""
         stayed = self.own is not None or np.array_equal(before.vertices, after.vertices)
-        believed = np.abs(after.trust - before.trust).max() <= _SETTLED
+        believed = np.abs(after.trust - before.trust).max() <= SETTLED
         return bool(stayed and believed and before.prior_weight == after.prior_weight)
 
     def solution(self, x: Floats, placement: Placement, status: str, passes: int, evaluations: int) -> Solution:
@@ -211,7 +199,7 @@ class LandmarkFit:
         loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
         return Solution(
             coefficients=x[self.unknowns.shape],
-            camera=self.frame.camera(x, self.unknowns),
+            camera=self.frame.camera(x, self.unknowns, self.principal_point),
             landmark_vertices=self._visible(x),
             landmark_loss=loss.landmark(x)[0],
             prior_loss=loss.prior(x)[0],
@@ -245,12 +233,16 @@ class LandmarkFit:
             mean=mean,
             modes=modes,
             rotation0=self.frame.rotation0,
+            principal=self.frame.from_pixels(self.principal_point),
         )
         return TotalLoss(landmark, self.prior, self.options.landmark_weight, prior_weight)
 
     def _trusted(self, residuals: Floats) -> Floats:
         """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
-        importance = np.linalg.norm(self.weights, ord=2, axis=(1, 2)) * self.basis.outer_eye_mm**2
+        W = self.weights  # its larger eigenvalue is the weight across an outline, or in all directions
+        half = (W[:, 0, 0] - W[:, 1, 1]) / 2
+        importance = (W[:, 0, 0] + W[:, 1, 1]) / 2 + np.sqrt(half**2 + W[:, 0, 1] ** 2)
+        importance *= self.basis.outer_eye_mm**2
         reasons = outlier_errors(residuals, self.neighbours)
         costs = np.einsum("cki,kij,ckj->ck", reasons, self.weights, reasons).min(axis=0)
         squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
@@ -258,38 +250,6 @@ class LandmarkFit:
 
     def _visible(self, x: Floats) -> NDArray[np.int64]:
         return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
-
-
-def _start(guess: Coefficients, unknowns: Unknowns) -> Floats:
-    """Unknowns (n,) at a guess, in the frame of its pose."""
-    x = np.zeros(unknowns.size)
-    for name, value in (("identity", guess.identity), ("expression", guess.expression)):
-        where = getattr(unknowns, name)
-        if value is None:
-            continue
-        if value.shape != x[where].shape:
-            raise ValueError(f"regressor: expected {name} of shape {x[where].shape}, got {value.shape}")
-        x[where] = value
-    return x
-
-
-def _held(bounds: tuple[Floats, Floats], start: Floats, unknowns: Unknowns, pose_too: bool) -> tuple[Floats, Floats]:
-    """Bounds that leave only the pose free, or nothing."""
-    held = slice(None) if pose_too else unknowns.shape
-    lower, upper = (bound.copy() for bound in bounds)
-    lower[held] = upper[held] = start[held]
-    return lower, upper
-
-
-def _posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats:
-    """Robust weights (k,) of the points that fix the first pose, from the misfit of the mean face."""
-    trust = np.ones(len(points))
-    for _ in range(_POSING_PASSES if options.robust else 0):
-        scale, rotation, translation = scaled_orthographic_pose(points, pixels, trust)
-        camera = ScaledOrthographicCamera(scale, rotation, translation)
-        squares = ((camera.project(points) - pixels) ** 2).sum(axis=1)
-        trust = robust_weights(squares, options.robust, 0.0)
-    return trust
 
 
 def _row_blocks(modes: Floats, points: NDArray[np.int64]) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,9 @@ class LandmarkLoss:
         The landmark vertices ``p = mean + modes a`` (Eq. 1).
     rotation0 : (3, 3) float
         R0.
+    principal : (2,) float
+        Where the optical axis meets the plane of the points; counts in perspective only. There a point y of the
+        camera frame, with the viewer at ``1/u``, is seen at ``(y + t) / (1 - u y_z) + principal``.
 
     References
     ----------
@@ -51,6 +54,7 @@ class LandmarkLoss:
     mean: Floats
     modes: Floats
     rotation0: Floats
+    principal: Floats = field(default_factory=lambda: np.zeros(2))
 
     def posed(self, x: Floats) -> Floats:
         """Landmarks (k, 3) in the camera frame, scaled but not translated: ``exp(l) R p``."""
@@ -59,7 +63,11 @@ class LandmarkLoss:
 
     def residuals(self, x: Floats) -> Floats:
         """Errors (k, 2), projected minus observed."""
-        return self.posed(x)[:, :2] + x[self.unknowns.translation] - self.points
+        y = self.posed(x)
+        seen = y[:, :2] + x[self.unknowns.translation]
+        if self.unknowns.perspective:
+            seen = seen * self._growth(x, y)[:, None] + self.principal
+        return seen - self.points
 
     def __call__(self, x: Floats) -> tuple[float, Floats]:
         """Value and gradient (n,) at ``x`` (n,)."""
@@ -68,19 +76,29 @@ class LandmarkLoss:
         scale = np.exp(x[u.log_scale])
         p = self.mean + (self.modes @ x[u.shape]).reshape(-1, 3)
         y = p @ (scale * R).T
-        e = y[:, :2] + x[u.translation] - self.points
+        seen = y[:, :2] + x[u.translation]
+        if u.perspective:
+            growth = self._growth(x, y)
+            e = seen * growth[:, None] + self.principal - self.points
+        else:
+            e = seen - self.points
         weighted = (self.weights @ e[:, :, None])[:, :, 0] / self.count
 
-        # dL/dy; the third row is zero because P drops the depth.
+        gradient = np.empty(u.size)
+        # dL/dy; without perspective the third row is zero because P drops the depth.
         pull = np.zeros_like(y)
         pull[:, :2] = 2 * weighted
-        gradient = np.empty(u.size)
+        if u.perspective:
+            slope = (pull[:, :2] * seen).sum(axis=1) * growth**2
+            gradient[u.inverse_distance] = slope @ y[:, 2]
+            pull[:, :2] *= growth[:, None]
+            pull[:, 2] = x[u.inverse_distance] * slope
         gradient[u.shape] = (pull @ (scale * R)).ravel() @ self.modes
         # dy = (J dw) x y, so dL/dw = J^T sum(y x dL/dy): the sum is the axial vector of this matrix.
         C = y.T @ pull
         torque = np.array([C[1, 2] - C[2, 1], C[2, 0] - C[0, 2], C[0, 1] - C[1, 0]])
         gradient[u.rotation] = left_jacobian(x[u.rotation]).T @ torque
-        gradient[u.log_scale] = C[0, 0] + C[1, 1]
+        gradient[u.log_scale] = C[0, 0] + C[1, 1] + C[2, 2]
         gradient[u.translation] = pull[:, :2].sum(axis=0)
         return float((weighted * e).sum()), gradient
 
@@ -88,15 +106,23 @@ class LandmarkLoss:
         """Derivative (k, 2, n) of the residuals."""
         u = self.unknowns
         y = self.posed(x)
-        A = np.exp(x[u.log_scale]) * self._rotation(x)[:2]
+        lens = np.tile(np.eye(2, 3), (len(y), 1, 1))  # derivative by y
         J = np.zeros((len(y), 2, u.size))
-        J[:, :, u.shape] = A @ self.modes.reshape(len(y), 3, -1)
-        turn = np.zeros((len(y), 2, 3))  # rows of -[y]x
+        if u.perspective:
+            growth = self._growth(x, y)
+            stretch = (y[:, :2] + x[u.translation]) * growth[:, None] ** 2
+            lens *= growth[:, None, None]
+            lens[:, :, 2] = x[u.inverse_distance] * stretch
+            J[:, :, u.inverse_distance] = stretch * y[:, 2:]
+        A = np.exp(x[u.log_scale]) * self._rotation(x)
+        J[:, :, u.shape] = lens @ A @ self.modes.reshape(len(y), 3, -1)
+        turn = np.zeros((len(y), 3, 3))  # -[y]x
         turn[:, 0, 1], turn[:, 0, 2] = y[:, 2], -y[:, 1]
         turn[:, 1, 0], turn[:, 1, 2] = -y[:, 2], y[:, 0]
-        J[:, :, u.rotation] = turn @ left_jacobian(x[u.rotation])
-        J[:, :, u.log_scale] = y[:, :2]
-        J[:, :, u.translation] = np.eye(2)
+        turn[:, 2, 0], turn[:, 2, 1] = y[:, 1], -y[:, 0]
+        J[:, :, u.rotation] = lens @ turn @ left_jacobian(x[u.rotation])
+        J[:, :, u.log_scale] = (lens @ y[:, :, None])[:, :, 0]
+        J[:, :, u.translation] = lens[:, :, :2]
         return J
 
     def curvature(self, x: Floats) -> Floats:
@@ -106,3 +132,7 @@ class LandmarkLoss:
 
     def _rotation(self, x: Floats) -> Floats:
         return rotation_matrix(x[self.unknowns.rotation]) @ self.rotation0
+
+    def _growth(self, x: Floats, y: Floats) -> Floats:
+        """How much larger (k,) a point is seen for being nearer than the model's origin."""
+        return 1 / (1 - x[self.unknowns.inverse_distance] * y[:, 2])

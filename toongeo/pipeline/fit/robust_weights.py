@@ -8,13 +8,15 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["KERNELS", "robust_weights"]
+__all__ = ["KERNELS", "SETTLED", "robust_weights"]
 
 Floats = NDArray[np.float64]
 
 _MEDIAN_SQUARE = 2 * np.log(2)  # of the squared length of a 2D error with unit variance a coordinate
 _HUBER = 2.5  # standard deviations from which the pull of a point stops growing
 _GEMAN_MCCLURE = 6.0  # standard deviations at which the pull of a point falls to a quarter of the quadratic one
+
+SETTLED = 0.05  # weights that change by less between passes are settled
 
 
 def _huber(t: Floats) -> Floats:

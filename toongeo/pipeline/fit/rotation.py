@@ -1,5 +1,7 @@
 """Rotation vectors: the exponential map and its derivative."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,9 +18,8 @@ def rotation_matrix(w: NDArray[np.float64]) -> NDArray[np.float64]:
     >>> rotation_matrix(np.array([0.0, 0.0, np.pi / 2])).round(12) @ [1.0, 0.0, 0.0]
     array([0., 1., 0.])
     """
-    a, b, _ = _coefficients(w)
-    W = _cross_matrix(w)
-    return np.eye(3) + a * W + b * (W @ W)
+    a, b, _, square = _coefficients(w)
+    return _combination(1 - b * square, a, b, w)
 
 
 def left_jacobian(w: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -26,24 +27,35 @@ def left_jacobian(w: NDArray[np.float64]) -> NDArray[np.float64]:
 
     So a point ``y = exp([w]x) y0`` moves by ``(J dw) x y``.
     """
-    _, b, c = _coefficients(w)
-    W = _cross_matrix(w)
-    return np.eye(3) + b * W + c * (W @ W)
+    _, b, c, square = _coefficients(w)
+    return _combination(1 - c * square, b, c, w)
 
 
-def _coefficients(w: NDArray[np.float64]) -> tuple[float, float, float]:
-    """``sin t / t``, ``(1 - cos t) / t^2`` and ``(t - sin t) / t^3`` for ``t = |w|``."""
+def _coefficients(w: NDArray[np.float64]) -> tuple[float, float, float, float]:
+    """``sin t / t``, ``(1 - cos t) / t^2``, ``(t - sin t) / t^3`` and ``t^2`` for ``t = |w|``."""
     square = float(w @ w)
-    t = np.sqrt(square)
+    t = math.sqrt(square)
     if t < _SMALL:
         return (
             1 - square / 6 + square**2 / 120,
             1 / 2 - square / 24 + square**2 / 720,
             1 / 6 - square / 120 + square**2 / 5040,
+            square,
         )
-    return float(np.sin(t) / t), float((1 - np.cos(t)) / square), float((t - np.sin(t)) / (square * t))
+    return math.sin(t) / t, (1 - math.cos(t)) / square, (t - math.sin(t)) / (square * t), square
 
 
-def _cross_matrix(w: NDArray[np.float64]) -> NDArray[np.float64]:
-    x, y, z = w
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+def _combination(i: float, a: float, b: float, w: NDArray[np.float64]) -> NDArray[np.float64]:
+    """``i I + a [w]x + b w w^T``, element by element: these small products are called most often of all.
+
+    With ``[w]x^2 = w w^T - t^2 I`` both matrices above have this form.
+    """
+    x, y, z = w.tolist()
+    bx, by, bz = b * x, b * y, b * z
+    return np.array(
+        [
+            [i + bx * x, bx * y - a * z, bx * z + a * y],
+            [bx * y + a * z, i + by * y, by * z - a * x],
+            [bx * z - a * y, by * z + a * x, i + bz * z],
+        ]
+    )

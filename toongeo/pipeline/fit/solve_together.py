@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from toongeo.pipeline.fit.joint_loss import JointLoss
-from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
+from toongeo.pipeline.fit.landmark_fit import LandmarkFit
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.solution import Solution
 
 __all__ = ["solve_together"]
 

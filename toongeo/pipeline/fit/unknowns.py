@@ -5,11 +5,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Unknowns:
-    """Layout ``[identity, expression, rotation vector (3), log scale, translation (2)]`` of the vector
-    ``x``."""
+    """Layout ``[identity, expression, rotation vector (3), log scale, translation (2)]`` of the vector ``x``.
+
+    In perspective the inverse distance of the viewer, 1/mm, follows.
+    """
 
     n_identity: int
     n_expression: int
+    perspective: bool = False
 
     @property
     def identity(self) -> slice:
@@ -34,7 +37,12 @@ class Unknowns:
 
     @property
     def translation(self) -> slice:
-        return slice(self.n_coefficients + 4, self.size)
+        return slice(self.n_coefficients + 4, self.n_coefficients + 6)
+
+    @property
+    def inverse_distance(self) -> int:
+        """Of the viewer, where the scale is that of the frame; only in perspective."""
+        return self.n_coefficients + 6
 
     @property
     def n_coefficients(self) -> int:
@@ -42,4 +50,4 @@ class Unknowns:
 
     @property
     def size(self) -> int:
-        return self.n_coefficients + 6
+        return self.n_coefficients + 6 + int(self.perspective)
