@@ -4,6 +4,10 @@ from toongeo.pipeline.align.align_face import AlignedFace, align_face
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.photometric_fit import photometric_fit
+from toongeo.pipeline.fit.photometric_options import PhotometricOptions
+from toongeo.pipeline.fit.rendered_picture import rendered_picture
+from toongeo.pipeline.fit.residual_map import residual_map
 from toongeo.pipeline.rig.build_rig import Rig, build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
@@ -17,6 +21,7 @@ __all__ = [
     "Eyes",
     "FaceFit",
     "FitOptions",
+    "PhotometricOptions",
     "Rig",
     "align_face",
     "bake_eyes",
@@ -27,4 +32,7 @@ __all__ = [
     "diffuse_texture",
     "fit_3dmm",
     "fit_eyes",
+    "photometric_fit",
+    "rendered_picture",
+    "residual_map",
 ]

@@ -1,0 +1,256 @@
+"""The optimisation problem of a photometric fit, and the way to its solution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from toongeo.geometry.vertex_normals import vertex_normals
+from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.confidence import skin_likelihood
+from toongeo.pipeline.fit.contour import visible_landmarks
+from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.landmark_fit import LandmarkFit
+from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty, shading_basis
+from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
+from toongeo.pipeline.fit.photometric_options import PhotometricOptions
+from toongeo.pipeline.fit.photometric_samples import PhotometricSamples, photometric_samples
+from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
+from toongeo.render.rasterize import rasterize
+from toongeo.render.srgb import linear_to_srgb
+
+__all__ = ["PhotometricProblem", "PhotometricSolution"]
+
+Floats = NDArray[np.float64]
+
+_ALGORITHM = "LD_LBFGS"
+_MAX_ALBEDO = 3.0  # standard deviations
+_DEPTH_STEP, _DEPTH_SLACK = 1.5, 3.0  # mm: pixel of the depth buffer, and how far behind it a sample is still seen
+_GRAZING = 0.15  # cosine of the view below which a normal says little
+_REWEIGHTINGS = 3  # of light and robust weights at the start of a pass
+_DARKEST = 0.01  # linear light below which sRGB is taken for as steep as here
+_SKIN = ("cheek_left", "cheek_right", "nose", "forehead")  # where skin is looked for first
+
+
+@dataclass(frozen=True, eq=False)
+class PhotometricSolution:
+    """Geometry and albedo ``z`` and light (9, 3) at the minimum, and how it was reached."""
+
+    z: Floats
+    light: Floats
+    landmark_vertices: NDArray[np.int64]
+    landmark_loss: float
+    prior_loss: float
+    loss: float
+    residuals: tuple[float, float]
+    confident_fraction: float
+    status: str
+    passes: int
+    evaluations: int
+
+
+@dataclass(frozen=True, eq=False)
+class PhotometricProblem:
+    """Everything that stays the same in all passes.
+
+    Attributes
+    ----------
+    model : MorphableModel
+    landmarks : LandmarkFit
+        The landmark problem: unknowns, frame, bounds, landmark loss and prior.
+    samples : PhotometricSamples
+    plane : PicturePlane
+    start : (n,) float
+        Geometry of the landmark fit.
+    prior_weight : float
+        ``w_r``.
+    options : PhotometricOptions
+    """
+
+    model: MorphableModel
+    landmarks: LandmarkFit
+    samples: PhotometricSamples
+    plane: PicturePlane
+    start: Floats
+    prior_weight: float
+    options: PhotometricOptions
+
+    @classmethod
+    def of(
+        cls,
+        img: NDArray[np.uint8],
+        fit: FaceFit,
+        pixels: Floats,
+        mask: NDArray[np.float32] | None,
+        options: PhotometricOptions,
+        fit_options: FitOptions,
+    ) -> PhotometricProblem:
+        """The problem for a picture, a landmark fit, its landmarks (68, 2) px and a mask (H, W)."""
+        landmarks = LandmarkFit.of(fit.model, pixels, fit_options)
+        samples = photometric_samples(fit.model, options.samples)
+        start = _unknowns_of(fit, landmarks)
+        face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))
+        plane = picture_plane(img, mask, landmarks.frame, face, step=options.resolution, blur=options.blur)
+        problem = cls(fit.model, landmarks, samples, plane, start, fit.report.prior_weight, options)
+        frozen = problem.frozen(problem.z0)
+        if not frozen.weights.any():
+            raise ValueError("mask: expected some of the face inside the picture and the mask, got nothing")
+        if mask is not None:
+            return problem
+        skin = np.isin(frozen.samples.vertices, _skin_vertices(fit.model))
+        points = frozen.posed(problem.z0)[skin, :2] + start[landmarks.unknowns.translation]
+        likelihood = skin_likelihood(plane, points) * plane.confidence
+        return replace(problem, plane=replace(plane, confidence=likelihood))
+
+    @property
+    def z0(self) -> Floats:
+        """Where the passes start: the geometry of the landmarks, the mean albedo."""
+        return np.concatenate([self.start, np.zeros(self.samples.albedo.shape[1])])
+
+    def solve(self) -> PhotometricSolution:
+        """Freeze, minimise, and again, as often as the options say."""
+        z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
+        frozen = self.frozen(z)
+        before = self._rms(frozen, *self._lit(frozen, z, self._penalty(frozen, z)))
+        scale, evaluations = None, 0
+        for _ in range(self.options.passes):
+            loss = self.loss(z, frozen)
+            scale = 1 / np.sqrt(loss.curvature(z)) if scale is None else scale
+            minimum = nlopt_minimize(
+                loss,
+                z,
+                bounds=bounds,
+                scale=scale,
+                algorithm=_ALGORITHM,
+                tolerance=self.options.tolerance,
+                max_evaluations=self.options.max_evaluations,
+            )
+            z, evaluations = minimum.x, evaluations + minimum.evaluations
+            frozen = self.frozen(z)
+        x, _ = loss.full(z)
+        return PhotometricSolution(
+            z=z,
+            light=x[loss.photometric.light].reshape(9, 3),
+            landmark_vertices=self._placed(z),
+            landmark_loss=loss.geometry.landmark(z[:n])[0],
+            prior_loss=loss.geometry.prior(z[:n])[0],
+            loss=minimum.value,
+            residuals=(before, self._rms(frozen, x, frozen.observe(x))),
+            confident_fraction=float(frozen.weights.sum()),
+            status=minimum.status,
+            passes=self.options.passes,
+            evaluations=evaluations,
+        )
+
+    def loss(self, z: Floats, frozen: PhotometricLoss) -> ReducedLoss:
+        """The loss of a pass that starts at geometry and albedo ``z``, for which `frozen` gave the samples.
+
+        Weights and slopes depend on the light, and the light on them, so they are found in turn.
+        """
+        photometric, penalty = frozen, self._penalty(frozen, z)
+        for _ in range(_REWEIGHTINGS):
+            x, observed = self._lit(photometric, z, penalty)
+            rendered = photometric.rendered(x, observed)
+            slopes = _srgb_slope((rendered + observed.seen) / 2)
+            size = np.linalg.norm(slopes * (rendered - observed.seen), axis=1)
+            weights = frozen.weights * self._robust(size, frozen.weights)
+            photometric = replace(frozen, slopes=slopes, weights=weights)
+        return ReducedLoss(
+            geometry=self.landmarks.loss(self._placed(z), self.prior_weight),
+            photometric=photometric,
+            penalty=penalty,
+            photometric_weight=self.options.photometric_weight * self.prior_weight,
+            albedo_weight=self.options.albedo_weight * self.prior_weight,
+        )
+
+    def frozen(self, z: Floats) -> PhotometricLoss:
+        """The photometric loss with visibility and normals at ``z``, without robust weights."""
+        u, frame, samples = self.landmarks.unknowns, self.landmarks.frame, self.samples
+        V = self.model.vertices(z[u.identity], z[u.expression])
+        R = frame.rotation(z[: u.size], u)
+        posed = np.exp(z[u.log_scale]) * V @ R.T
+        posed[:, :2] += z[u.translation]
+        normals = vertex_normals(V, self.model.faces)[samples.vertices] @ R.T
+        area = samples.area * np.where(normals[:, 2] > _GRAZING, normals[:, 2], 0.0) * _visible(posed, samples)
+        at = posed[samples.vertices, :2]
+        weights = area * self.plane.trust(at) / max(float(area.sum()), np.finfo(float).tiny)
+        rows = np.flatnonzero(weights > 0)
+        return PhotometricLoss(
+            unknowns=u,
+            samples=samples.subset(rows),
+            plane=self.plane,
+            rotation0=frame.rotation0,
+            basis=shading_basis(normals[rows] @ frame.roll.T),
+            slopes=_srgb_slope(self.plane.sample(at[rows])[0]),
+            weights=weights[rows],
+        )
+
+    def _penalty(self, loss: PhotometricLoss, z: Floats) -> Floats:
+        return light_penalty(loss, loss.observe(z), self.options.light_weight)
+
+    def _lit(self, loss: PhotometricLoss, z: Floats, penalty: Floats) -> tuple[Floats, Observation]:
+        observed = loss.observe(z)
+        return np.concatenate([z, best_light(loss, observed, penalty).ravel()]), observed
+
+    def _robust(self, size: Floats, confidence: Floats) -> Floats:
+        """Weight (k,) of residuals of this size in Geman and McClure's loss ``r^2 / (1 + r^2 / s^2)``."""
+        order = np.argsort(size)
+        mass = np.cumsum(confidence[order])
+        median = size[order[np.searchsorted(mass, mass[-1] / 2)]]
+        scale = max(self.options.robust, 2.5 * float(median))
+        return 1 / (1 + (size / scale) ** 2) ** 2
+
+    def _rms(self, loss: PhotometricLoss, x: Floats, observed: Observation) -> float:
+        """Root mean square difference in sRGB inside the confidence map, over samples and channels."""
+        shown = linear_to_srgb(np.clip(loss.rendered(x, observed), 0.0, 1.0))
+        error = ((shown - linear_to_srgb(observed.seen)) ** 2).mean(axis=1)
+        return float(np.sqrt(loss.weights @ error / loss.weights.sum()))
+
+    def _placed(self, z: Floats) -> NDArray[np.int64]:
+        u = self.landmarks.unknowns
+        return visible_landmarks(self.landmarks.basis, z[u.shape], self.landmarks.frame.rotation(z[: u.size], u))
+
+    def _bounds(self) -> tuple[Floats, Floats]:
+        albedo = np.full(self.samples.albedo.shape[1], _MAX_ALBEDO)
+        lower, upper = self.landmarks.bounds
+        return np.concatenate([lower, -albedo]), np.concatenate([upper, albedo])
+
+
+def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:
+    """The vector of a fit in the frame of its landmark problem; inverse of `CanonicalFrame.camera`."""
+    u, frame = landmarks.unknowns, landmarks.frame
+    x = np.zeros(u.size)
+    x[u.identity], x[u.expression] = fit.identity, fit.expression
+    turn = frame.roll.T @ fit.camera.rotation @ frame.rotation0.T
+    x[u.rotation] = Rotation.from_matrix(turn).as_rotvec()
+    x[u.log_scale] = np.log(fit.camera.scale / frame.scale)
+    x[u.translation] = frame.from_pixels(fit.camera.translation[None])[0]
+    return x
+
+
+def _visible(posed: Floats, samples: PhotometricSamples) -> NDArray[np.bool_]:
+    """Which samples no other part of the face hides, by a depth buffer."""
+    face = posed[np.unique(samples.faces)]
+    half = np.ceil(np.abs(face[:, :2]).max(axis=0) / _DEPTH_STEP) + 1  # symmetric, so that a mirrored face is too
+    px = posed[:, :2] * [1.0, -1.0] / _DEPTH_STEP + half
+    width, height = (2 * half + 1).astype(int)
+    fragments = rasterize(np.column_stack([px, posed[:, 2]]), samples.faces, int(height), int(width))
+    column, row = np.rint(px[samples.vertices]).astype(int).T
+    ids = fragments.face_ids[row, column]
+    depth = (posed[:, 2][samples.faces[ids]] * fragments.barycentrics[row, column]).sum(axis=1)
+    return (ids < 0) | (posed[samples.vertices, 2] > depth - _DEPTH_SLACK)
+
+
+def _skin_vertices(model: MorphableModel) -> NDArray[np.int64]:
+    names = [name for name in _SKIN if name in model.regions] or ["face"]
+    return np.flatnonzero(np.any([model.region(name) for name in names], axis=0))
+
+
+def _srgb_slope(linear: Floats) -> Floats:
+    """Derivative of `linear_to_srgb`, bounded in the dark."""
+    return 1.055 / 2.4 * np.maximum(linear, _DARKEST) ** (1 / 2.4 - 1)
