@@ -11,6 +11,7 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 import resource
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -20,11 +21,11 @@ from toongeo import ScaledOrthographicCamera, default_model, fit_3dmm, photometr
 from toongeo.geometry import vertex_normals
 from toongeo.pipeline.fit.contour import visible_landmarks
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
-from toongeo.render import Surface, irradiance, render_mesh, sh_basis, srgb_to_linear
+from toongeo.render import Surface, interpolate, irradiance, rasterize, render_mesh, sh_basis, srgb_to_linear
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 SUBJECTS = range(10)
-SIZE = 512
+SIZE, NOISE = 512, 1.0  # px
 
 
 def rendered_subject(model, seed):
@@ -41,8 +42,10 @@ def rendered_subject(model, seed):
     colours = np.clip(model.albedo_mean + np.tensordot(albedo, model.albedo, 1), 0, 1)
     picture = render_mesh(Surface(vertices, model.faces, colours=colours), camera, SIZE, light=light)
     placed = visible_landmarks(landmark_basis(model), np.concatenate([identity, expression]), camera.rotation)
-    landmarks = camera.project(vertices[placed]) + rng.normal(0, 1, (68, 2))
-    return picture, landmarks, (vertices, camera, albedo, light)
+    landmarks = camera.project(vertices[placed]) + NOISE * rng.normal(size=(68, 2))
+    found = fit_3dmm(None, landmarks)
+    truth = replace(found, identity=identity, expression=expression, camera=camera, albedo=albedo, light=light)
+    return picture, landmarks, truth
 
 
 def random_light(rng):
@@ -66,11 +69,19 @@ def face_error(found, truth):
     return float(np.linalg.norm(scale * a @ (U @ D @ Vt).T - b, axis=1).mean())
 
 
-def appearance(model, vertices, camera, albedo, light):
-    """Albedo and shaded albedo (n, 3) of the vertices, linear light."""
-    reflectance = srgb_to_linear(model.albedo_mean + np.tensordot(albedo, model.albedo, 1))
-    shade = irradiance(vertex_normals(vertices, model.faces) @ camera.rotation.T, light) / np.pi
-    return reflectance, reflectance * shade
+def shaded(fit):
+    """Albedo (n, 3) of the vertices and, pixel by pixel, shading times albedo of the front of the face, linear light.
+
+    NaN where the face is not.
+    """
+    reflectance = srgb_to_linear(fit.model.albedo_mean + np.tensordot(fit.albedo, fit.model.albedo, 1))
+    front = fit.faces[fit.region("face")[fit.faces].all(1)]
+    normals = vertex_normals(fit.vertices, fit.faces) @ fit.camera.rotation.T
+    points = np.column_stack([fit.project(fit.vertices), fit.camera.depth(fit.vertices)])
+    fragments = rasterize(points, front, SIZE, SIZE)
+    product = interpolate(fragments, front, reflectance * irradiance(normals, fit.light) / np.pi)
+    product[~fragments.mask] = np.nan
+    return reflectance, product
 
 
 def recovery():
@@ -80,20 +91,20 @@ def recovery():
     print("|---|---|---|---|---|")
     rows = []
     for seed in SUBJECTS:
-        picture, landmarks, (vertices, camera, albedo, light) = rendered_subject(model, seed)
+        picture, landmarks, truth = rendered_subject(model, seed)
         fit = fit_3dmm(picture, landmarks)
         refined = photometric_fit(picture, fit, landmarks)
-        seen = face & ((vertex_normals(vertices, model.faces) @ camera.rotation.T)[:, 2] > 0.2)
-        true_albedo, true_shaded = (a[seen] for a in appearance(model, vertices, camera, albedo, light))
-        found = appearance(model, refined.vertices, refined.camera, refined.albedo, refined.light)
-        found_albedo, found_shaded = (a[seen] for a in found)
-        gain = (found_albedo * true_albedo).sum(0) / (found_albedo**2).sum(0)
+        (true_albedo, true_product), (albedo, product) = shaded(truth), shaded(refined)
+        both = np.isfinite(true_product + product)
+        error = product[both] - true_product[both]
+        albedo, true_albedo = albedo[face], true_albedo[face]
+        gain = (albedo * true_albedo).sum(0) / (albedo**2).sum(0)
         rows.append(
             [
-                face_error(fit.vertices[face], vertices[face]),
-                face_error(refined.vertices[face], vertices[face]),
-                100 * np.sqrt(((found_shaded - true_shaded) ** 2).mean() / (true_shaded**2).mean()),
-                100 * np.sqrt(((gain * found_albedo - true_albedo) ** 2).mean() / (true_albedo**2).mean()),
+                face_error(fit.vertices[face], truth.vertices[face]),
+                face_error(refined.vertices[face], truth.vertices[face]),
+                100 * np.sqrt((error**2).mean() / (true_product[both] ** 2).mean()),
+                100 * np.sqrt(((gain * albedo - true_albedo) ** 2).mean() / (true_albedo**2).mean()),
             ]
         )
         print(f"| {seed} | " + " | ".join(f"{value:.2f}" for value in rows[-1]) + " |")
@@ -101,16 +112,18 @@ def recovery():
 
 
 def pictures(folders):
-    print("\n| picture | residual before % | after % | ratio | of squares | confident % | s at 1024 px |")
-    print("|---|---|---|---|---|---|---|")
+    print("\n| picture | ambient % | lit % | fitted % | L_photo, fitted / ambient | / lit | confident % | s at 1024 px |")
+    print("|---|---|---|---|---|---|---|---|")
     for folder in folders:
         for points in sorted(folder.glob("*.pts")):
             path = next(path for path in sorted(folder.glob(f"{points.stem}.*")) if path.suffix != ".pts")
             img, landmarks = read_image(path), read_landmarks(points)
             report = photometric_fit(img, fit_3dmm(img, landmarks), landmarks).photometric
-            before, after = 100 * report.residual_before, 100 * report.residual_after
+            values = [report.residual_ambient, report.residual_before, report.residual_after]
+            ambient, lit, fitted = (100 * value for value in values)
             print(
-                f"| {points.stem} | {before:.1f} | {after:.1f} | {after / before:.2f} | {(after / before) ** 2:.2f} "
+                f"| {points.stem} | {ambient:.1f} | {lit:.1f} | {fitted:.1f} "
+                f"| {(fitted / ambient) ** 2:.2f} | {(fitted / lit) ** 2:.2f} "
                 f"| {100 * report.confident_fraction:.0f} | {seconds_at_1024(img, landmarks):.3f} |"
             )
 

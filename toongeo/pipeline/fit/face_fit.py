@@ -64,10 +64,10 @@ class PhotometricReport:
 
     Attributes
     ----------
-    residual_before, residual_after : float
+    residual_ambient, residual_before, residual_after : float
         Root mean square difference of rendering and picture in sRGB, 0..1, over the channels and the visible samples
-        weighted by the confidence map: for the mean albedo with the light that is best for it on the face of the
-        landmarks alone, and for what was found. Both with the same map.
+        weighted by the confidence map, the same for all three: the mean albedo on the face of the landmarks alone,
+        in ambient light of the best colour, and in the best light; and what was found.
     confident_fraction : float
         Share of the visible face that the confidence map believes.
     status : str
@@ -76,6 +76,7 @@ class PhotometricReport:
     seconds : float
     """
 
+    residual_ambient: float
     residual_before: float
     residual_after: float
     confident_fraction: float

@@ -17,6 +17,7 @@ from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit, Solution
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
+from toongeo.pipeline.fit.photometric_fit import photometric_fit
 
 __all__ = ["fit_3dmm"]
 
@@ -30,6 +31,7 @@ def fit_3dmm(
     model: MorphableModel | None = None,
     algorithm: str = "LD_LBFGS",
     options: FitOptions | None = None,
+    photometric: bool = False,
 ) -> FaceFit:
     """Pose, identity and expression of a morphable model from 68 landmarks.
 
@@ -55,6 +57,9 @@ def fit_3dmm(
         size.
     options : FitOptions, optional
         Weights and limits.
+    photometric : bool
+        Go on with `photometric_fit` with its defaults: shape and pose are refined, and albedo and light found, by
+        comparing a rendering with the picture. Call it yourself to give it a mask.
 
     Returns
     -------
@@ -64,7 +69,7 @@ def fit_3dmm(
     ------
     ValueError
         If the landmarks have another shape, hold infinities, are fewer than 6, coincide, lie on a line or
-        outside the picture, or the algorithm is not known.
+        outside the picture, or the algorithm is not known, or ``photometric`` is asked for without a picture.
     RuntimeError
         If the optimizer fails.
 
@@ -87,6 +92,8 @@ def fit_3dmm(
     started = time.perf_counter()
     options = FitOptions() if options is None else options
     model = default_model() if model is None else model
+    if photometric and img is None:
+        raise ValueError("img: expected a picture for the photometric term, got None")
     if algorithm not in known_algorithms():
         raise ValueError(f"algorithm: no algorithm {algorithm!r}; known: {', '.join(known_algorithms())}")
     warnings = check_landmarks(landmarks, _image_shape(img))
@@ -95,7 +102,7 @@ def fit_3dmm(
         problem = LandmarkFit.of(model, pixels, options)
         solution = problem.solve(algorithm)
         rms_px, outer_eye_px = _inner_error(problem.basis, solution, pixels)
-    return FaceFit(
+    fit = FaceFit(
         identity=solution.coefficients[problem.unknowns.identity],
         expression=solution.coefficients[problem.unknowns.expression],
         camera=solution.camera,
@@ -116,6 +123,9 @@ def fit_3dmm(
             seconds=time.perf_counter() - started,
         ),
     )
+    if not photometric or img is None:
+        return fit
+    return photometric_fit(img, fit, pixels, fit_options=options)
 
 
 def _image_shape(img: NDArray[np.uint8] | None) -> tuple[int, ...] | None:

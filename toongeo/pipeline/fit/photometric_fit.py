@@ -96,8 +96,9 @@ def photometric_fit(
         albedo=solution.z[unknowns.size :],
         light=solution.light,
         photometric=PhotometricReport(
-            residual_before=solution.residuals[0],
-            residual_after=solution.residuals[1],
+            residual_ambient=solution.residuals[0],
+            residual_before=solution.residuals[1],
+            residual_after=solution.residuals[2],
             confident_fraction=solution.confident_fraction,
             status=solution.status,
             passes=solution.passes,

@@ -17,17 +17,17 @@ class PhotometricOptions:
 
     Attributes
     ----------
-    photometric_weight : float
-        ``w_p / w_r`` of Eq. 3 (Pan et al. 2024). Residuals are sRGB, 0..1. With independent samples it would be
-        their number over twice the variance of one; the errors of a rendering are strongly correlated, so the
-        number is that of a few hundred.
+    independent_samples : float
+        How many independent observations the picture is worth. Together with the variance v of the residuals, which
+        is estimated in each pass, it gives ``w_p = w_r independent_samples / v`` in Eq. 3 (Pan et al. 2024): a
+        picture that the model explains well counts much, a drawing little. The number is far below that of the
+        samples, because the errors of a rendering are alike over whole regions.
+    noise : float
+        Least standard deviation of a residual, sRGB (0..1), for each channel.
     albedo_weight : float
         ``w_tex`` of Eq. 6.
     light_weight : float
         Ridge on the light's degrees 1 and 2, as a part of what the samples say about it.
-    robust : float
-        Residual (sRGB, root of the sum over channels) from which a sample counts as an outlier, or more where most
-        samples differ by more: the scale of Geman and McClure's loss.
     passes : int
         How often visibility, normals and robust weights are computed anew.
     samples : int
@@ -47,10 +47,10 @@ class PhotometricOptions:
         If one of them is not a finite positive number.
     """
 
-    photometric_weight: float = 2e4
-    albedo_weight: float = 1.0
+    independent_samples: float = 0.5
+    noise: float = 0.003
+    albedo_weight: float = 0.01
     light_weight: float = 1e-3
-    robust: float = 0.12
     passes: int = 5
     samples: int = 3000
     resolution: float = 0.6

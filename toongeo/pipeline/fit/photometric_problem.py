@@ -33,6 +33,9 @@ _MAX_ALBEDO = 3.0  # standard deviations
 _DEPTH_STEP, _DEPTH_SLACK = 1.5, 3.0  # mm: pixel of the depth buffer, and how far behind it a sample is still seen
 _GRAZING = 0.15  # cosine of the view below which a normal says little
 _REWEIGHTINGS = 3  # of light and robust weights at the start of a pass
+_MEDIAN_OF_NORM = 1.54  # of a normal variable of unit variance in three channels
+_OUTLYING, _OUTLIER = 4.0, 0.05  # scale of the robust loss: standard deviations, and sRGB at least
+_AMBIENT_ONLY = 1e9  # ridge that leaves no light but the ambient one
 _DARKEST = 0.01  # linear light below which sRGB is taken for as steep as here
 _SKIN = ("cheek_left", "cheek_right", "nose", "forehead")  # where skin is looked for first
 
@@ -47,7 +50,7 @@ class PhotometricSolution:
     landmark_loss: float
     prior_loss: float
     loss: float
-    residuals: tuple[float, float]
+    residuals: tuple[float, float, float]
     confident_fraction: float
     status: str
     passes: int
@@ -116,7 +119,9 @@ class PhotometricProblem:
         """Freeze, minimise, and again, as often as the options say."""
         z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
         frozen = self.frozen(z)
-        before = self._rms(frozen, *self._lit(frozen, z, self._penalty(frozen, z)))
+        penalty = self._penalty(frozen, z)
+        ambient = self._rms(frozen, *self._lit(frozen, z, _AMBIENT_ONLY * penalty))
+        before = self._rms(frozen, *self._lit(frozen, z, penalty))
         scale, evaluations = None, 0
         for _ in range(self.options.passes):
             loss = self.loss(z, frozen)
@@ -140,7 +145,7 @@ class PhotometricProblem:
             landmark_loss=loss.geometry.landmark(z[:n])[0],
             prior_loss=loss.geometry.prior(z[:n])[0],
             loss=minimum.value,
-            residuals=(before, self._rms(frozen, x, frozen.observe(x))),
+            residuals=(ambient, before, self._rms(frozen, x, frozen.observe(x))),
             confident_fraction=float(frozen.weights.sum()),
             status=minimum.status,
             passes=self.options.passes,
@@ -158,13 +163,15 @@ class PhotometricProblem:
             rendered = photometric.rendered(x, observed)
             slopes = _srgb_slope((rendered + observed.seen) / 2)
             size = np.linalg.norm(slopes * (rendered - observed.seen), axis=1)
-            weights = frozen.weights * self._robust(size, frozen.weights)
-            photometric = replace(frozen, slopes=slopes, weights=weights)
+            noise = max(_weighted_median(size, frozen.weights) / _MEDIAN_OF_NORM, self.options.noise)
+            outlying = max(_OUTLYING * noise, _OUTLIER)
+            robust = 1 / (1 + (size / outlying) ** 2) ** 2  # Geman and McClure's r^2 / (1 + r^2 / s^2)
+            photometric = replace(frozen, slopes=slopes, weights=frozen.weights * robust)
         return ReducedLoss(
             geometry=self.landmarks.loss(self._placed(z), self.prior_weight),
             photometric=photometric,
             penalty=penalty,
-            photometric_weight=self.options.photometric_weight * self.prior_weight,
+            photometric_weight=self.options.independent_samples / noise**2 * self.prior_weight,
             albedo_weight=self.options.albedo_weight * self.prior_weight,
         )
 
@@ -196,14 +203,6 @@ class PhotometricProblem:
     def _lit(self, loss: PhotometricLoss, z: Floats, penalty: Floats) -> tuple[Floats, Observation]:
         observed = loss.observe(z)
         return np.concatenate([z, best_light(loss, observed, penalty).ravel()]), observed
-
-    def _robust(self, size: Floats, confidence: Floats) -> Floats:
-        """Weight (k,) of residuals of this size in Geman and McClure's loss ``r^2 / (1 + r^2 / s^2)``."""
-        order = np.argsort(size)
-        mass = np.cumsum(confidence[order])
-        median = size[order[np.searchsorted(mass, mass[-1] / 2)]]
-        scale = max(self.options.robust, 2.5 * float(median))
-        return 1 / (1 + (size / scale) ** 2) ** 2
 
     def _rms(self, loss: PhotometricLoss, x: Floats, observed: Observation) -> float:
         """Root mean square difference in sRGB inside the confidence map, over samples and channels."""
@@ -254,3 +253,9 @@ def _skin_vertices(model: MorphableModel) -> NDArray[np.int64]:
 def _srgb_slope(linear: Floats) -> Floats:
     """Derivative of `linear_to_srgb`, bounded in the dark."""
     return 1.055 / 2.4 * np.maximum(linear, _DARKEST) ** (1 / 2.4 - 1)
+
+
+def _weighted_median(values: Floats, weights: Floats) -> float:
+    order = np.argsort(values)
+    mass = np.cumsum(weights[order])
+    return float(values[order[np.searchsorted(mass, mass[-1] / 2)]])

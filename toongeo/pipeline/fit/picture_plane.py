@@ -116,7 +116,7 @@ def _resampled(img: NDArray, px: Floats, step: float, blur: float, *, linear: bo
     x0, y0 = np.clip(np.floor(px.min(axis=0)).astype(int) - reach, 0, [width - 1, height - 1])
     x1, y1 = np.clip(np.ceil(px.max(axis=0)).astype(int) + reach, [x0 + 1, y0 + 1], [width, height])
     part = np.ascontiguousarray(img[y0:y1, x0:x1])
-    values = np.asarray(srgb_to_linear(part) if linear else part, dtype=np.float32)
+    values: NDArray = np.asarray(srgb_to_linear(part) if linear else part, dtype=np.float32)
     factor = np.array([1.0, 1.0])
     if step >= 2 * _FINE:
         size = np.maximum(np.array(values.shape[1::-1]) * _FINE // int(step), 1)

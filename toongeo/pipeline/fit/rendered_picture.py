@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry.vertex_normals import vertex_normals
 from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.render.paint_table import Shading
 from toongeo.render.render_mesh import render_mesh
 from toongeo.render.surface import Surface
 
@@ -39,9 +40,8 @@ def rendered_picture(
         If the fit has no albedo and light.
     """
     size = (int(shape[0]), int(shape[1]))
-    surface = face_surface(fit)
-    shading = "lit" if lit else "unlit"
-    return render_mesh(surface, fit.camera, size, light=fit.light, background=background, shading=shading)
+    shading: Shading = "lit" if lit else "unlit"
+    return render_mesh(face_surface(fit), fit.camera, size, light=fit.light, background=background, shading=shading)
 
 
 def face_surface(fit: FaceFit) -> Surface:
