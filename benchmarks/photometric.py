@@ -112,7 +112,9 @@ def recovery():
 
 
 def pictures(folders):
-    print("\n| picture | ambient % | lit % | fitted % | L_photo, fitted / ambient | / lit | confident % | s at 1024 px |")
+    print(
+        "\n| picture | ambient % | lit % | fitted % | L_photo, fitted / ambient | / lit | confident % | s at 1024 px |"
+    )
     print("|---|---|---|---|---|---|---|---|")
     for folder in folders:
         for points in sorted(folder.glob("*.pts")):

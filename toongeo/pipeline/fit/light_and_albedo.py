@@ -63,7 +63,7 @@ class ReducedLoss:
     penalty : (9,) float
         Ridge on the light, in units of the photometric loss.
     photometric_weight, albedo_weight : float
-        ``w_p`` and ``w_r w_tex``.
+        ``w_p``, and ``w_r w_tex`` of Eq. 6.
 
     References
     ----------

@@ -18,14 +18,15 @@ class PhotometricOptions:
     Attributes
     ----------
     independent_samples : float
-        How many independent observations the picture is worth. Together with the variance v of the residuals, which
-        is estimated in each pass, it gives ``w_p = w_r independent_samples / v`` in Eq. 3 (Pan et al. 2024): a
-        picture that the model explains well counts much, a drawing little. The number is far below that of the
-        samples, because the errors of a rendering are alike over whole regions.
+        How many independent observations a picture is worth that the model explains to within ``noise``: the N of
+        ``w_p = w_r N (noise^2 / v) / v`` in Eq. 3 (Pan et al. 2024), where the variance v of the residuals is
+        estimated in each pass. So a picture that the model explains well counts much, a drawing little. N is far
+        below the number of samples, because the errors of a rendering are alike over whole regions.
     noise : float
         Least standard deviation of a residual, sRGB (0..1), for each channel.
     albedo_weight : float
-        ``w_tex`` of Eq. 6.
+        ``w_r w_tex / w_p``: the drop in mean squared residual for which a coefficient of the albedo may grow to one
+        standard deviation. Unlike the shape's, it does not depend on how well the picture is explained.
     light_weight : float
         Ridge on the light's degrees 1 and 2, as a part of what the samples say about it.
     passes : int
@@ -47,12 +48,12 @@ class PhotometricOptions:
         If one of them is not a finite positive number.
     """
 
-    independent_samples: float = 0.5
+    independent_samples: float = 3.0
     noise: float = 0.003
-    albedo_weight: float = 0.01
-    light_weight: float = 1e-3
-    passes: int = 5
-    samples: int = 3000
+    albedo_weight: float = 1e-5
+    light_weight: float = 1e-4
+    passes: int = 4
+    samples: int = 2500
     resolution: float = 0.6
     blur: float = 1.0
     tolerance: float = 1e-5

@@ -167,13 +167,22 @@ class PhotometricProblem:
             outlying = max(_OUTLYING * noise, _OUTLIER)
             robust = 1 / (1 + (size / outlying) ** 2) ** 2  # Geman and McClure's r^2 / (1 + r^2 / s^2)
             photometric = replace(frozen, slopes=slopes, weights=frozen.weights * robust)
+        photometric_weight = self._evidence(noise) * self.prior_weight
         return ReducedLoss(
             geometry=self.landmarks.loss(self._placed(z), self.prior_weight),
             photometric=photometric,
             penalty=penalty,
-            photometric_weight=self.options.independent_samples / noise**2 * self.prior_weight,
-            albedo_weight=self.options.albedo_weight * self.prior_weight,
+            photometric_weight=photometric_weight,
+            albedo_weight=self.options.albedo_weight * photometric_weight,
         )
+
+    def _evidence(self, noise: float) -> float:
+        """``w_p / w_r``: independent observations over their variance.
+
+        What the model does not explain is alike over whole regions, so a larger error also means fewer independent
+        observations; their number falls as the variance rises.
+        """
+        return self.options.independent_samples * (self.options.noise / noise) ** 2 / noise**2
 
     def frozen(self, z: Floats) -> PhotometricLoss:
         """The photometric loss with visibility and normals at ``z``, without robust weights."""
@@ -234,8 +243,9 @@ def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:
 
 def _visible(posed: Floats, samples: PhotometricSamples) -> NDArray[np.bool_]:
     """Which samples no other part of the face hides, by a depth buffer."""
-    face = posed[np.unique(samples.faces)]
-    half = np.ceil(np.abs(face[:, :2]).max(axis=0) / _DEPTH_STEP) + 1  # symmetric, so that a mirrored face is too
+    half = (
+        np.ceil(np.abs(posed[samples.vertices, :2]).max(axis=0) / _DEPTH_STEP) + 1
+    )  # symmetric, so that a mirrored face is too
     px = posed[:, :2] * [1.0, -1.0] / _DEPTH_STEP + half
     width, height = (2 * half + 1).astype(int)
     fragments = rasterize(np.column_stack([px, posed[:, 2]]), samples.faces, int(height), int(width))
