@@ -28,7 +28,8 @@ class PhotometricOptions:
         ``w_r w_tex / w_p``: the drop in mean squared residual for which a coefficient of the albedo may grow to one
         standard deviation. Unlike the shape's, it does not depend on how well the picture is explained.
     light_weight : float
-        Ridge on the light's degrees 1 and 2, as a part of what the samples say about it.
+        Ridge on the light's degrees 1 and 2, as a part of what the samples say about it, for a picture explained to
+        within ``noise``; it grows with the misfit, so that light does not run wild where a face is in shadow.
     passes : int
         How often visibility, normals and robust weights are computed anew.
     samples : int

@@ -119,7 +119,7 @@ class PhotometricProblem:
         """Freeze, minimise, and again, as often as the options say."""
         z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
         frozen = self.frozen(z)
-        penalty = self._penalty(frozen, z)
+        penalty = self.loss(z, frozen).penalty
         ambient = self._rms(frozen, *self._lit(frozen, z, _AMBIENT_ONLY * penalty))
         before = self._rms(frozen, *self._lit(frozen, z, penalty))
         scale, evaluations = None, 0
@@ -157,13 +157,16 @@ class PhotometricProblem:
 
         Weights and slopes depend on the light, and the light on them, so they are found in turn.
         """
-        photometric, penalty = frozen, self._penalty(frozen, z)
+        photometric = frozen
+        ridge = light_penalty(frozen, frozen.observe(z), self.options.light_weight)
+        penalty = ridge
         for _ in range(_REWEIGHTINGS):
             x, observed = self._lit(photometric, z, penalty)
             rendered = photometric.rendered(x, observed)
             slopes = _srgb_slope((rendered + observed.seen) / 2)
             size = np.linalg.norm(slopes * (rendered - observed.seen), axis=1)
             noise = max(_weighted_median(size, frozen.weights) / _MEDIAN_OF_NORM, self.options.noise)
+            penalty = ridge * (noise / self.options.noise)
             outlying = max(_OUTLYING * noise, _OUTLIER)
             robust = 1 / (1 + (size / outlying) ** 2) ** 2  # Geman and McClure's r^2 / (1 + r^2 / s^2)
             photometric = replace(frozen, slopes=slopes, weights=frozen.weights * robust)
@@ -205,9 +208,6 @@ class PhotometricProblem:
             slopes=_srgb_slope(self.plane.sample(at[rows])[0]),
             weights=weights[rows],
         )
-
-    def _penalty(self, loss: PhotometricLoss, z: Floats) -> Floats:
-        return light_penalty(loss, loss.observe(z), self.options.light_weight)
 
     def _lit(self, loss: PhotometricLoss, z: Floats, penalty: Floats) -> tuple[Floats, Observation]:
         observed = loss.observe(z)
