@@ -17,6 +17,7 @@ from toongeo.pipeline.fit.light_and_albedo import best_light, light_penalty, sha
 from toongeo.pipeline.fit.photometric_problem import PhotometricProblem
 from toongeo.pipeline.fit.photometric_samples import photometric_samples
 from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
+from toongeo.pipeline.fit.visible_samples import visible_samples
 from toongeo.render import (
     ScaledOrthographicCamera,
     Surface,
@@ -183,6 +184,18 @@ def test_samples_are_spread_over_both_halves_alike(model, count):
     a, b, c = model.mean[front].transpose(1, 0, 2)
     area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
     assert samples.area.sum() == pytest.approx(area, rel=0.02)
+
+
+def test_a_turned_head_hides_the_far_side_of_its_nose(model):
+    """Seen from the front nearly everything is visible; at 60 degrees the far cheek beside the nose is not."""
+    samples = photometric_samples(model, 3000)
+    assert visible_samples(model.mean, samples).mean() > 0.95
+    turned = {sign: model.mean @ ScaledOrthographicCamera.look(yaw=sign * 60).rotation.T for sign in (-1, 1)}
+    seen = {sign: visible_samples(posed, samples) for sign, posed in turned.items()}
+    right = model.mean[samples.vertices, 0] < 0
+    assert seen[-1][right].mean() < 0.7 < 0.9 < seen[1][right].mean()
+    partner = np.searchsorted(samples.vertices, model.mirror[samples.vertices])
+    assert (seen[1] == seen[-1][partner]).mean() > 0.995
 
 
 def test_the_plane_shows_the_picture_upright_and_in_millimetres():

@@ -21,7 +21,7 @@ from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 from toongeo.pipeline.fit.photometric_samples import PhotometricSamples, photometric_samples
 from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
-from toongeo.render.rasterize import rasterize
+from toongeo.pipeline.fit.visible_samples import visible_samples
 from toongeo.render.srgb import linear_to_srgb
 
 __all__ = ["PhotometricProblem", "PhotometricSolution"]
@@ -30,7 +30,6 @@ Floats = NDArray[np.float64]
 
 _ALGORITHM = "LD_LBFGS"
 _MAX_ALBEDO = 3.0  # standard deviations
-_DEPTH_STEP, _DEPTH_SLACK = 1.5, 3.0  # mm: pixel of the depth buffer, and how far behind it a sample is still seen
 _GRAZING = 0.15  # cosine of the view below which a normal says little
 _REWEIGHTINGS = 3  # of light and robust weights at the start of a pass
 _MEDIAN_OF_NORM = 1.54  # of a normal variable of unit variance in three channels
@@ -195,7 +194,7 @@ class PhotometricProblem:
         posed = np.exp(z[u.log_scale]) * V @ R.T
         posed[:, :2] += z[u.translation]
         normals = vertex_normals(V, self.model.faces)[samples.vertices] @ R.T
-        area = samples.area * np.where(normals[:, 2] > _GRAZING, normals[:, 2], 0.0) * _visible(posed, samples)
+        area = samples.area * np.where(normals[:, 2] > _GRAZING, normals[:, 2], 0.0) * visible_samples(posed, samples)
         at = posed[samples.vertices, :2]
         weights = area * self.plane.trust(at) / max(float(area.sum()), np.finfo(float).tiny)
         rows = np.flatnonzero(weights > 0)
@@ -239,20 +238,6 @@ def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:
     x[u.log_scale] = np.log(fit.camera.scale / frame.scale)
     x[u.translation] = frame.from_pixels(fit.camera.translation[None])[0]
     return x
-
-
-def _visible(posed: Floats, samples: PhotometricSamples) -> NDArray[np.bool_]:
-    """Which samples no other part of the face hides, by a depth buffer."""
-    half = (
-        np.ceil(np.abs(posed[samples.vertices, :2]).max(axis=0) / _DEPTH_STEP) + 1
-    )  # symmetric, so that a mirrored face is too
-    px = posed[:, :2] * [1.0, -1.0] / _DEPTH_STEP + half
-    width, height = (2 * half + 1).astype(int)
-    fragments = rasterize(np.column_stack([px, posed[:, 2]]), samples.faces, int(height), int(width))
-    column, row = np.rint(px[samples.vertices]).astype(int).T
-    ids = fragments.face_ids[row, column]
-    depth = (posed[:, 2][samples.faces[ids]] * fragments.barycentrics[row, column]).sum(axis=1)
-    return (ids < 0) | (posed[samples.vertices, 2] > depth - _DEPTH_SLACK)
 
 
 def _skin_vertices(model: MorphableModel) -> NDArray[np.int64]:
