@@ -15,6 +15,7 @@ from toongeo.pipeline import AlignedFace as AlignedFace
 from toongeo.pipeline import Eyes as Eyes
 from toongeo.pipeline import FaceFit as FaceFit
 from toongeo.pipeline import FitOptions as FitOptions
+from toongeo.pipeline import PhotometricOptions as PhotometricOptions
 from toongeo.pipeline import RidgeRegressor as RidgeRegressor
 from toongeo.pipeline import Rig as Rig
 from toongeo.pipeline import adjust_coefficients as adjust_coefficients
@@ -27,6 +28,9 @@ from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
+from toongeo.pipeline import photometric_fit as photometric_fit
+from toongeo.pipeline import rendered_picture as rendered_picture
+from toongeo.pipeline import residual_map as residual_map
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
 from toongeo.protocols import Coefficients as Coefficients
 from toongeo.render import PerspectiveCamera as PerspectiveCamera

@@ -5,6 +5,10 @@ from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.photometric_fit import photometric_fit
+from toongeo.pipeline.fit.photometric_options import PhotometricOptions
+from toongeo.pipeline.fit.rendered_picture import rendered_picture
+from toongeo.pipeline.fit.residual_map import residual_map
 from toongeo.pipeline.fit.ridge_regressor import RidgeRegressor, train_ridge_regressor
 from toongeo.pipeline.rig.build_rig import Rig, build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
@@ -20,6 +24,7 @@ __all__ = [
     "FaceFit",
     "FitOptions",
     "RidgeRegressor",
+    "PhotometricOptions",
     "Rig",
     "adjust_coefficients",
     "align_face",
@@ -32,4 +37,7 @@ __all__ = [
     "fit_3dmm",
     "fit_eyes",
     "train_ridge_regressor",
+    "photometric_fit",
+    "rendered_picture",
+    "residual_map",
 ]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from toongeo.model.morphable_model import MorphableModel
     from toongeo.protocols import HeadCamera
 
-__all__ = ["FaceFit", "FitReport"]
+__all__ = ["FaceFit", "FitReport", "PhotometricReport"]
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,34 @@ class FitReport:
     outliers: tuple[int, ...] = ()
 
 
+@dataclass(frozen=True)
+class PhotometricReport:
+    """How a photometric refinement went.
+
+    Attributes
+    ----------
+    residual_ambient, residual_before, residual_after : float
+        Root mean square difference of rendering and picture in sRGB, 0..1, over the channels and the visible samples
+        weighted by the confidence map, the same for all three: the mean albedo on the face of the landmarks alone,
+        in ambient light of the best colour, and in the best light; and what was found.
+    confident_fraction : float
+        Share of the visible face that the confidence map believes.
+    status : str
+        nlopt's, of the last pass.
+    passes, evaluations : int
+    seconds : float
+    """
+
+    residual_ambient: float
+    residual_before: float
+    residual_after: float
+    confident_fraction: float
+    status: str
+    passes: int
+    evaluations: int
+    seconds: float
+
+
 @dataclass(frozen=True, eq=False)
 class FaceFit:
     """A morphable model posed and shaped after a picture.
@@ -76,8 +104,11 @@ class FaceFit:
         Vertices of the landmarks as this pose shows them: jaw points lie on the outline of the head.
     model : MorphableModel
     report : FitReport
-    albedo, light : float arrays or None
-        From the regressor; left for the photometric term.
+    albedo : (9,) float64 or None
+        Standard deviations; None where only landmarks were fitted.
+    light : (9, 3) float64 or None
+        Radiance in spherical harmonics, camera frame, for `toongeo.render.irradiance`.
+    photometric : PhotometricReport or None
     """
 
     identity: NDArray[np.float64]
@@ -88,6 +119,7 @@ class FaceFit:
     report: FitReport
     albedo: NDArray[np.float64] | None = None
     light: NDArray[np.float64] | None = None
+    photometric: PhotometricReport | None = None
 
     def __post_init__(self) -> None:
         read_only(self, "identity", "expression", "landmark_vertices", "albedo", "light")

@@ -21,6 +21,7 @@ from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
 from toongeo.pipeline.fit.landmark_table import landmark_table, table_landmarks
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
+from toongeo.pipeline.fit.photometric_fit import photometric_fit
 from toongeo.pipeline.fit.solution import Solution
 from toongeo.pipeline.fit.solve_together import solve_together
 from toongeo.protocols import Coefficients, Regressor
@@ -39,6 +40,7 @@ def fit_3dmm(
     algorithm: str = "LD_LBFGS",
     options: FitOptions | None = None,
     regressor: Regressor | None = None,
+    photometric: bool = False,
     **changes: Any,
 ) -> FaceFit: ...
 
@@ -52,6 +54,7 @@ def fit_3dmm(
     algorithm: str = "LD_LBFGS",
     options: FitOptions | None = None,
     regressor: Regressor | None = None,
+    photometric: bool = False,
     **changes: Any,
 ) -> list[FaceFit]: ...
 
@@ -64,6 +67,7 @@ def fit_3dmm(
     algorithm: str = "LD_LBFGS",
     options: FitOptions | None = None,
     regressor: Regressor | None = None,
+    photometric: bool = False,
     **changes: Any,
 ) -> FaceFit | list[FaceFit]:
     """Pose, identity and expression of a morphable model from landmarks.
@@ -95,6 +99,9 @@ def fit_3dmm(
         Weights and limits.
     regressor : Regressor, optional
         ``(img, landmarks) -> Coefficients``: where the fit starts or, with ``refine=False``, the answer.
+    photometric : bool
+        Go on with `photometric_fit` with its defaults: shape and pose are refined, and albedo and light found, by
+        comparing a rendering with the picture. Call it yourself to give it a mask.
     **changes
         Fields of `FitOptions` that differ from ``options``, as in ``fit_3dmm(img, points, robust=None)``.
 
@@ -107,7 +114,8 @@ def fit_3dmm(
     ValueError
         If the landmarks have another shape, hold infinities, are fewer than 6, coincide, lie on a line or
         outside the picture, or the algorithm is not known. If a regressor's coefficients have another shape, or there
-        are more or fewer landmarks than pictures.
+        are more or fewer landmarks than pictures. If ``photometric`` is asked for without a picture, with a landmark
+        table or with a perspective camera.
     RuntimeError
         If the optimizer fails.
 
@@ -136,6 +144,8 @@ def fit_3dmm(
         raise ValueError("refine: expected a regressor whose answer is not to be refined, got none")
     together = isinstance(img, list)
     pictures = _pairs(img, landmarks) if together else [(img, landmarks)]
+    if photometric:
+        _check_photometric([picture for picture, _ in pictures], options)
     tasks = [_task(*picture, model, options, regressor) for picture in pictures]
     with one_thread():
         if together:
@@ -151,7 +161,22 @@ def fit_3dmm(
                 )
                 for fit, task in zip(fits, tasks, strict=True)
             ]
+    if photometric:
+        fits = [
+            photometric_fit(picture, fit, task.pixels, fit_options=options)
+            for (picture, _), fit, task in zip(pictures, fits, tasks, strict=True)
+        ]
     return fits if together else fits[0]
+
+
+def _check_photometric(pictures: list[Any], options: FitOptions) -> None:
+    if any(picture is None for picture in pictures):
+        raise ValueError("img: expected a picture for the photometric term, got None")
+    if options.camera != "orthographic" or not isinstance(options.scheme, str):
+        raise ValueError(
+            "photometric: expected the orthographic camera and a landmark scheme by name, "
+            f"got {options.camera!r} and {type(options.scheme).__name__}"
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,69 @@
+"""What can be set in a photometric fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+__all__ = ["PhotometricOptions"]
+
+_COUNTED = ("passes", "max_evaluations", "samples")
+
+
+@dataclass(frozen=True)
+class PhotometricOptions:
+    """Weights and limits of `photometric_fit`; the defaults were found on rendered faces of known shape.
+
+    Attributes
+    ----------
+    independent_samples : float
+        How many independent observations a picture is worth that the model explains to within ``noise``: the N of
+        ``w_p = w_r N (noise^2 / v) / v`` in Eq. 3 (Pan et al. 2024), where the variance v of the residuals is
+        estimated in each pass. So a picture that the model explains well counts much, a drawing little. N is far
+        below the number of samples, because the errors of a rendering are alike over whole regions.
+    noise : float
+        Least standard deviation of a residual, sRGB (0..1), for each channel.
+    albedo_weight : float
+        ``w_r w_tex / w_p``: the drop in mean squared residual for which a coefficient of the albedo may grow to one
+        standard deviation. Unlike the shape's, it does not depend on how well the picture is explained.
+    light_weight : float
+        Ridge on the light's degrees 1 and 2, as a part of what the samples say about it, for a picture explained to
+        within ``noise``; it grows with the misfit, so that light does not run wild where a face is in shadow.
+    passes : int
+        How often visibility, normals and robust weights are computed anew.
+    samples : int
+        About how many points of the face are compared.
+    resolution : float, mm
+        Pixel of the resampled picture. 0.6 makes a face about 320 px high.
+    blur : float, mm
+        Standard deviation of the Gaussian that the picture is smoothed by: about the distance of the samples.
+    tolerance : float
+        Relative change of the loss at which a pass stops.
+    max_evaluations : int
+        Of the loss, in one pass.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not a finite positive number.
+    """
+
+    independent_samples: float = 3.0
+    noise: float = 0.003
+    albedo_weight: float = 1e-5
+    light_weight: float = 1e-4
+    passes: int = 4
+    samples: int = 2500
+    resolution: float = 0.6
+    blur: float = 1.0
+    tolerance: float = 1e-5
+    max_evaluations: int = 15
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name in _COUNTED and not (isinstance(value, int) and value >= 1):
+                raise ValueError(f"{field.name}: expected an integer >= 1, got {value!r}")
+            if not (np.isfinite(value) and value > 0):
+                raise ValueError(f"{field.name}: expected a finite number > 0, got {value!r}")

@@ -1,0 +1,258 @@
+"""The optimisation problem of a photometric fit, and the way to its solution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from toongeo.geometry.vertex_normals import vertex_normals
+from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.confidence import skin_likelihood
+from toongeo.pipeline.fit.contour import visible_landmarks
+from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.landmark_fit import LandmarkFit
+from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty, shading_basis
+from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
+from toongeo.pipeline.fit.photometric_options import PhotometricOptions
+from toongeo.pipeline.fit.photometric_samples import PhotometricSamples, photometric_samples
+from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
+from toongeo.pipeline.fit.visible_samples import visible_samples
+from toongeo.render.srgb import linear_to_srgb
+
+__all__ = ["PhotometricProblem", "PhotometricSolution"]
+
+Floats = NDArray[np.float64]
+
+_ALGORITHM = "LD_LBFGS"
+_MAX_ALBEDO = 3.0  # standard deviations
+_GRAZING = 0.15  # cosine of the view below which a normal says little
+_REWEIGHTINGS = 3  # of light and robust weights at the start of a pass
+_MEDIAN_OF_NORM = 1.54  # of a normal variable of unit variance in three channels
+_OUTLYING, _OUTLIER = 4.0, 0.05  # scale of the robust loss: standard deviations, and sRGB at least
+_AMBIENT_ONLY = 1e9  # ridge that leaves no light but the ambient one
+_DARKEST = 0.01  # linear light below which sRGB is taken for as steep as here
+_SKIN = ("cheek_left", "cheek_right", "nose", "forehead")  # where skin is looked for first
+
+
+@dataclass(frozen=True, eq=False)
+class PhotometricSolution:
+    """Geometry and albedo ``z`` and light (9, 3) at the minimum, and how it was reached."""
+
+    z: Floats
+    light: Floats
+    landmark_vertices: NDArray[np.int64]
+    landmark_loss: float
+    prior_loss: float
+    loss: float
+    residuals: tuple[float, float, float]
+    confident_fraction: float
+    status: str
+    passes: int
+    evaluations: int
+
+
+@dataclass(frozen=True, eq=False)
+class PhotometricProblem:
+    """Everything that stays the same in all passes.
+
+    Attributes
+    ----------
+    model : MorphableModel
+    landmarks : LandmarkFit
+        The landmark problem: unknowns, frame, bounds, landmark loss and prior.
+    samples : PhotometricSamples
+    plane : PicturePlane
+    start : (n,) float
+        Geometry of the landmark fit.
+    prior_weight : float
+        ``w_r``.
+    options : PhotometricOptions
+    """
+
+    model: MorphableModel
+    landmarks: LandmarkFit
+    samples: PhotometricSamples
+    plane: PicturePlane
+    start: Floats
+    prior_weight: float
+    options: PhotometricOptions
+
+    @classmethod
+    def of(
+        cls,
+        img: NDArray[np.uint8],
+        fit: FaceFit,
+        pixels: Floats,
+        mask: NDArray[np.float32] | None,
+        options: PhotometricOptions,
+        fit_options: FitOptions,
+    ) -> PhotometricProblem:
+        """The problem for a picture, a landmark fit, its landmarks (68, 2) px and a mask (H, W)."""
+        landmarks = LandmarkFit.of(fit.model, pixels, fit_options)
+        samples = photometric_samples(fit.model, options.samples)
+        start = _unknowns_of(fit, landmarks)
+        face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))
+        plane = picture_plane(img, mask, landmarks.frame, face, step=options.resolution, blur=options.blur)
+        problem = cls(fit.model, landmarks, samples, plane, start, fit.report.prior_weight, options)
+        frozen = problem.frozen(problem.z0)
+        if not frozen.weights.any():
+            raise ValueError("mask: expected some of the face inside the picture and the mask, got nothing")
+        if mask is not None:
+            return problem
+        skin = np.isin(frozen.samples.vertices, _skin_vertices(fit.model))
+        points = frozen.posed(problem.z0)[skin, :2] + start[landmarks.unknowns.translation]
+        likelihood = skin_likelihood(plane, points) * plane.confidence
+        return replace(problem, plane=replace(plane, confidence=likelihood))
+
+    @property
+    def z0(self) -> Floats:
+        """Where the passes start: the geometry of the landmarks, the mean albedo."""
+        return np.concatenate([self.start, np.zeros(self.samples.albedo.shape[1])])
+
+    def solve(self) -> PhotometricSolution:
+        """Freeze, minimise, and again, as often as the options say."""
+        z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
+        frozen = self.frozen(z)
+        penalty = self.loss(z, frozen).penalty
+        ambient = self._rms(frozen, *self._lit(frozen, z, _AMBIENT_ONLY * penalty))
+        before = self._rms(frozen, *self._lit(frozen, z, penalty))
+        scale, evaluations = None, 0
+        for _ in range(self.options.passes):
+            loss = self.loss(z, frozen)
+            scale = 1 / np.sqrt(loss.curvature(z)) if scale is None else scale
+            minimum = nlopt_minimize(
+                loss,
+                z,
+                bounds=bounds,
+                scale=scale,
+                algorithm=_ALGORITHM,
+                tolerance=self.options.tolerance,
+                max_evaluations=self.options.max_evaluations,
+            )
+            z, evaluations = minimum.x, evaluations + minimum.evaluations
+            frozen = self.frozen(z)
+        x, _ = loss.full(z)
+        return PhotometricSolution(
+            z=z,
+            light=x[loss.photometric.light].reshape(9, 3),
+            landmark_vertices=self._placed(z),
+            landmark_loss=loss.geometry.landmark(z[:n])[0],
+            prior_loss=loss.geometry.prior(z[:n])[0],
+            loss=minimum.value,
+            residuals=(ambient, before, self._rms(frozen, x, frozen.observe(x))),
+            confident_fraction=float(frozen.weights.sum()),
+            status=minimum.status,
+            passes=self.options.passes,
+            evaluations=evaluations,
+        )
+
+    def loss(self, z: Floats, frozen: PhotometricLoss) -> ReducedLoss:
+        """The loss of a pass that starts at geometry and albedo ``z``, for which `frozen` gave the samples.
+
+        Weights and slopes depend on the light, and the light on them, so they are found in turn.
+        """
+        photometric = frozen
+        ridge = light_penalty(frozen, frozen.observe(z), self.options.light_weight)
+        penalty = ridge
+        for _ in range(_REWEIGHTINGS):
+            x, observed = self._lit(photometric, z, penalty)
+            rendered = photometric.rendered(x, observed)
+            slopes = _srgb_slope((rendered + observed.seen) / 2)
+            size = np.linalg.norm(slopes * (rendered - observed.seen), axis=1)
+            noise = max(_weighted_median(size, frozen.weights) / _MEDIAN_OF_NORM, self.options.noise)
+            penalty = ridge * (noise / self.options.noise)
+            outlying = max(_OUTLYING * noise, _OUTLIER)
+            robust = 1 / (1 + (size / outlying) ** 2) ** 2  # Geman and McClure's r^2 / (1 + r^2 / s^2)
+            photometric = replace(frozen, slopes=slopes, weights=frozen.weights * robust)
+        photometric_weight = self._evidence(noise) * self.prior_weight
+        return ReducedLoss(
+            geometry=self.landmarks.loss(self._placed(z), self.prior_weight),
+            photometric=photometric,
+            penalty=penalty,
+            photometric_weight=photometric_weight,
+            albedo_weight=self.options.albedo_weight * photometric_weight,
+        )
+
+    def _evidence(self, noise: float) -> float:
+        """``w_p / w_r``: independent observations over their variance.
+
+        What the model does not explain is alike over whole regions, so a larger error also means fewer independent
+        observations; their number falls as the variance rises.
+        """
+        return self.options.independent_samples * (self.options.noise / noise) ** 2 / noise**2
+
+    def frozen(self, z: Floats) -> PhotometricLoss:
+        """The photometric loss with visibility and normals at ``z``, without robust weights."""
+        u, frame, samples = self.landmarks.unknowns, self.landmarks.frame, self.samples
+        V = self.model.vertices(z[u.identity], z[u.expression])
+        R = frame.rotation(z[: u.size], u)
+        posed = np.exp(z[u.log_scale]) * V @ R.T
+        posed[:, :2] += z[u.translation]
+        normals = vertex_normals(V, self.model.faces)[samples.vertices] @ R.T
+        area = samples.area * np.where(normals[:, 2] > _GRAZING, normals[:, 2], 0.0) * visible_samples(posed, samples)
+        at = posed[samples.vertices, :2]
+        weights = area * self.plane.trust(at) / max(float(area.sum()), np.finfo(float).tiny)
+        rows = np.flatnonzero(weights > 0)
+        return PhotometricLoss(
+            unknowns=u,
+            samples=samples.subset(rows),
+            plane=self.plane,
+            rotation0=frame.rotation0,
+            basis=shading_basis(normals[rows] @ frame.roll.T),
+            slopes=_srgb_slope(self.plane.sample(at[rows])[0]),
+            weights=weights[rows],
+        )
+
+    def _lit(self, loss: PhotometricLoss, z: Floats, penalty: Floats) -> tuple[Floats, Observation]:
+        observed = loss.observe(z)
+        return np.concatenate([z, best_light(loss, observed, penalty).ravel()]), observed
+
+    def _rms(self, loss: PhotometricLoss, x: Floats, observed: Observation) -> float:
+        """Root mean square difference in sRGB inside the confidence map, over samples and channels."""
+        shown = linear_to_srgb(np.clip(loss.rendered(x, observed), 0.0, 1.0))
+        error = ((shown - linear_to_srgb(observed.seen)) ** 2).mean(axis=1)
+        return float(np.sqrt(loss.weights @ error / loss.weights.sum()))
+
+    def _placed(self, z: Floats) -> NDArray[np.int64]:
+        u = self.landmarks.unknowns
+        return visible_landmarks(self.landmarks.basis, z[u.shape], self.landmarks.frame.rotation(z[: u.size], u))
+
+    def _bounds(self) -> tuple[Floats, Floats]:
+        albedo = np.full(self.samples.albedo.shape[1], _MAX_ALBEDO)
+        lower, upper = self.landmarks.bounds
+        return np.concatenate([lower, -albedo]), np.concatenate([upper, albedo])
+
+
+def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:
+    """The vector of a fit in the frame of its landmark problem; inverse of `CanonicalFrame.camera`."""
+    u, frame = landmarks.unknowns, landmarks.frame
+    x = np.zeros(u.size)
+    x[u.identity], x[u.expression] = fit.identity, fit.expression
+    origin = np.zeros((1, 3))
+    rotation = (fit.camera.view(np.eye(3)) - fit.camera.view(origin)).T
+    scale = np.sqrt((fit.camera.jacobian(origin) ** 2).sum() / 2)  # |s P R|^2 = 2 s^2
+    x[u.rotation] = Rotation.from_matrix(frame.roll.T @ rotation @ frame.rotation0.T).as_rotvec()
+    x[u.log_scale] = np.log(scale / frame.scale)
+    x[u.translation] = frame.from_pixels(fit.camera.project(origin))[0]
+    return x
+
+
+def _skin_vertices(model: MorphableModel) -> NDArray[np.int64]:
+    names = [name for name in _SKIN if name in model.regions] or ["face"]
+    return np.flatnonzero(np.any([model.region(name) for name in names], axis=0))
+
+
+def _srgb_slope(linear: Floats) -> Floats:
+    """Derivative of `linear_to_srgb`, bounded in the dark."""
+    return 1.055 / 2.4 * np.maximum(linear, _DARKEST) ** (1 / 2.4 - 1)
+
+
+def _weighted_median(values: Floats, weights: Floats) -> float:
+    order = np.argsort(values)
+    mass = np.cumsum(weights[order])
+    return float(values[order[np.searchsorted(mass, mass[-1] / 2)]])
