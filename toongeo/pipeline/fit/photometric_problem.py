@@ -21,6 +21,7 @@ from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 from toongeo.pipeline.fit.photometric_samples import PhotometricSamples, photometric_samples
 from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
+from toongeo.pipeline.fit.solution import Placement
 from toongeo.pipeline.fit.visible_samples import visible_samples
 from toongeo.render.srgb import linear_to_srgb
 
@@ -71,6 +72,8 @@ class PhotometricProblem:
         Geometry of the landmark fit.
     prior_weight : float
         ``w_r``.
+    trust : (k,) float
+        Robust weights of the landmarks at the start.
     options : PhotometricOptions
     """
 
@@ -80,6 +83,7 @@ class PhotometricProblem:
     plane: PicturePlane
     start: Floats
     prior_weight: float
+    trust: Floats
     options: PhotometricOptions
 
     @classmethod
@@ -98,7 +102,10 @@ class PhotometricProblem:
         start = _unknowns_of(fit, landmarks)
         face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))
         plane = picture_plane(img, mask, landmarks.frame, face, step=options.resolution, blur=options.blur)
-        problem = cls(fit.model, landmarks, samples, plane, start, fit.report.prior_weight, options)
+        weight = fit.report.prior_weight
+        placement = Placement(fit.landmark_vertices, landmarks.trust, weight)
+        trust = landmarks.renewed(placement, start, first=False).trust
+        problem = cls(fit.model, landmarks, samples, plane, start, weight, trust, options)
         frozen = problem.frozen(problem.z0)
         if not frozen.weights.any():
             raise ValueError("mask: expected some of the face inside the picture and the mask, got nothing")
@@ -171,7 +178,7 @@ class PhotometricProblem:
             photometric = replace(frozen, slopes=slopes, weights=frozen.weights * robust)
         photometric_weight = self._evidence(noise) * self.prior_weight
         return ReducedLoss(
-            geometry=self.landmarks.loss(self._placed(z), self.prior_weight),
+            geometry=self.landmarks.loss(self._placed(z), self.prior_weight, self.trust),
             photometric=photometric,
             penalty=penalty,
             photometric_weight=photometric_weight,
