@@ -14,7 +14,9 @@ Floats = NDArray[np.float64]
 
 _MEDIAN_SQUARE = 2 * np.log(2)  # of the squared length of a 2D error with unit variance a coordinate
 _HUBER = 2.5  # standard deviations from which the pull of a point stops growing
-_GEMAN_MCCLURE = 6.0  # standard deviations at which the pull of a point falls to a quarter of the quadratic one
+# Up to _TRUSTED standard deviations a point counts in full, so that a face without outliers is that of least
+# squares; beyond, the squared error is Geman-McClure's with this width.
+_TRUSTED, _GEMAN_MCCLURE = 5.0, 4.0
 
 SETTLED = 0.05  # weights that change by less between passes are settled
 
@@ -24,7 +26,7 @@ def _huber(t: Floats) -> Floats:
 
 
 def _geman_mcclure(t: Floats) -> Floats:
-    return 1 / (1 + t / _GEMAN_MCCLURE**2) ** 2
+    return 1 / (1 + np.maximum(t - _TRUSTED**2, 0.0) / _GEMAN_MCCLURE**2) ** 2
 
 
 # Weight of a point whose squared error is t variances: rho'(t) of the kernel rho.
