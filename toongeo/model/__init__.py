@@ -3,6 +3,8 @@
 from toongeo.model.data_path import data_path
 from toongeo.model.default_model import default_model
 from toongeo.model.eyeball_template import EyeballTemplate
+from toongeo.model.load_eos import load_eos
+from toongeo.model.load_ict_facekit import load_ict_facekit
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = [
@@ -10,4 +12,6 @@ __all__ = [
     "MorphableModel",
     "data_path",
     "default_model",
+    "load_eos",
+    "load_ict_facekit",
 ]

@@ -40,6 +40,7 @@ class MorphableModel:
     uv : (t, 2) float64, origin bottom left
     uv_faces : (m, 3) int64
     eyes : left and right eyeball
+        Empty for a model that has none; the rig needs them.
     """
 
     mean: np.ndarray
@@ -57,7 +58,7 @@ class MorphableModel:
     mirror: np.ndarray
     uv: np.ndarray
     uv_faces: np.ndarray
-    eyes: tuple[EyeballTemplate, EyeballTemplate]
+    eyes: tuple[EyeballTemplate, ...] = ()
 
     def __post_init__(self) -> None:
         read_only(self, *(field.name for field in fields(self) if field.name != "eyes"))

@@ -39,7 +39,7 @@ class Eyes:
 
     centres: np.ndarray
     radii: np.ndarray
-    templates: tuple[EyeballTemplate, EyeballTemplate]
+    templates: tuple[EyeballTemplate, ...]
     report: dict[str, float]
 
     def __post_init__(self) -> None:
