@@ -413,8 +413,18 @@ def test_bad_pictures_and_masks(subject, fitted):
             photometric_fit(img, fitted[0], landmarks, mask=mask)
     with pytest.raises(ValueError, match=r"landmarks: expected shape \(68, 2\), got \(51, 2\)"):
         photometric_fit(picture, fitted[0], landmarks[:51])
-    with pytest.raises(ValueError, match="img: expected a picture for the photometric term, got None"):
+    with pytest.raises(ValueError, match="img: expected one picture for the photometric term, got None"):
         fit_3dmm(None, landmarks, photometric=True)
+
+
+def test_what_the_photometric_term_would_undo_is_refused(subject, fitted):
+    picture, landmarks = subject[:2]
+    with pytest.raises(ValueError, match="img: expected one picture for the photometric term, got 2 pictures"):
+        fit_3dmm([picture, picture], [landmarks, landmarks], photometric=True)
+    with pytest.raises(ValueError, match="adjust: expected None with the photometric term"):
+        fit_3dmm(picture, landmarks, photometric=True, adjust="expression")
+    with pytest.raises(ValueError, match="fit_options: expected the orthographic camera, got 'perspective'"):
+        photometric_fit(picture, fitted[0], landmarks, fit_options=FitOptions(camera="perspective"))
 
 
 def test_a_black_picture_gives_no_light(subject, fitted):

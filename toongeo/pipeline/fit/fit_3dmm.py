@@ -114,8 +114,8 @@ def fit_3dmm(
     ValueError
         If the landmarks have another shape, hold infinities, are fewer than 6, coincide, lie on a line or
         outside the picture, or the algorithm is not known. If a regressor's coefficients have another shape, or there
-        are more or fewer landmarks than pictures. If ``photometric`` is asked for without a picture, with a landmark
-        table or with a perspective camera.
+        are more or fewer landmarks than pictures. If ``photometric`` is asked for with no picture or several,
+        with ``adjust``, a landmark table or a perspective camera.
     RuntimeError
         If the optimizer fails.
 
@@ -145,7 +145,7 @@ def fit_3dmm(
     together = isinstance(img, list)
     pictures = _pairs(img, landmarks) if together else [(img, landmarks)]
     if photometric:
-        _check_photometric([picture for picture, _ in pictures], options)
+        _check_photometric(img, options)
     tasks = [_task(*picture, model, options, regressor) for picture in pictures]
     with one_thread():
         if together:
@@ -162,21 +162,17 @@ def fit_3dmm(
                 for fit, task in zip(fits, tasks, strict=True)
             ]
     if photometric:
-        fits = [
-            photometric_fit(picture, fit, task.pixels, fit_options=options)
-            for (picture, _), fit, task in zip(pictures, fits, tasks, strict=True)
-        ]
+        return photometric_fit(img, fits[0], tasks[0].pixels, fit_options=options)
     return fits if together else fits[0]
 
 
-def _check_photometric(pictures: list[Any], options: FitOptions) -> None:
-    if any(picture is None for picture in pictures):
-        raise ValueError("img: expected a picture for the photometric term, got None")
-    if options.camera != "orthographic" or not isinstance(options.scheme, str):
-        raise ValueError(
-            "photometric: expected the orthographic camera and a landmark scheme by name, "
-            f"got {options.camera!r} and {type(options.scheme).__name__}"
-        )
+def _check_photometric(img: Any, options: FitOptions) -> None:
+    """A picture alone can be rendered and compared; what it would undo is refused."""
+    if img is None or isinstance(img, list):
+        got = "None" if img is None else f"{len(img)} pictures, whose shared identity each would change"
+        raise ValueError(f"img: expected one picture for the photometric term, got {got}")
+    if options.adjust is not None:
+        raise ValueError(f"adjust: expected None with the photometric term, which has a prior, got {options.adjust!r}")
 
 
 @dataclass(frozen=True, eq=False)

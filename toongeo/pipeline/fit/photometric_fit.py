@@ -44,7 +44,8 @@ def photometric_fit(
     img : (H, W, 3) uint8
         RGB, sRGB encoded.
     fit : FaceFit
-        From `fit_3dmm` with the same landmarks.
+        From `fit_3dmm` with the same landmarks. A perspective camera is replaced by the scaled orthographic one that
+        agrees with it at the origin of the head.
     landmarks : (68, 2) array_like, px
         NaN rows are missing.
     mask : (H, W) array_like of bool or float in [0, 1], optional
@@ -64,7 +65,7 @@ def photometric_fit(
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, the mask has another size or other values, nothing of the face is in
-        both picture and mask, or the landmarks are not (68, 2).
+        both picture and mask, the landmarks are not (68, 2), or ``fit_options`` ask for a perspective camera.
     RuntimeError
         If the optimizer fails.
 
@@ -80,10 +81,11 @@ def photometric_fit(
     pixels = np.array(landmarks, np.float64)
     if pixels.shape != (68, 2):
         raise ValueError(f"landmarks: expected shape (68, 2), got {pixels.shape}")
+    fit_options = fit_options or FitOptions()
+    if fit_options.camera != "orthographic":
+        raise ValueError(f"fit_options: expected the orthographic camera, got {fit_options.camera!r}")
     with one_thread():
-        problem = PhotometricProblem.of(
-            img, fit, pixels, confidence, options or PhotometricOptions(), fit_options or FitOptions()
-        )
+        problem = PhotometricProblem.of(img, fit, pixels, confidence, options or PhotometricOptions(), fit_options)
         solution = problem.solve()
     unknowns = problem.landmarks.unknowns
     refined = FaceFit(
