@@ -4,6 +4,7 @@ Each Protocol is satisfied by shape, not by inheritance: any object or function 
 """
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Protocol
 
 import numpy as np
@@ -100,4 +101,89 @@ class Regressor(Protocol):
 
         The picture is (H, W, 3) uint8, or None when there is none.
         """
+        ...
+
+
+class FaceLabel(IntEnum):
+    """What a pixel of a parsed face shows. Left and right are the subject's."""
+
+    BACKGROUND = 0
+    SKIN = 1
+    BROW_LEFT = 2
+    BROW_RIGHT = 3
+    EYE_LEFT = 4
+    EYE_RIGHT = 5
+    NOSE = 6
+    UPPER_LIP = 7
+    LOWER_LIP = 8
+    INNER_MOUTH = 9
+    HAIR = 10
+    EARS = 11
+    NECK = 12
+    OTHER = 13  # glasses, hats, hands, black outlines
+
+
+@dataclass(frozen=True, eq=False)
+class FaceParse:
+    """A picture cut into the parts of a face.
+
+    Attributes
+    ----------
+    labels : (H, W) uint8
+        A :class:`FaceLabel` a pixel.
+    confidence : (H, W) float in [0, 1]
+        How far each label is to be believed.
+    """
+
+    labels: np.ndarray
+    confidence: np.ndarray
+
+    def __post_init__(self) -> None:
+        labels, confidence = np.array(self.labels), np.array(self.confidence, np.float32)
+        if labels.ndim != 2 or labels.dtype != np.uint8 or labels.max(initial=0) > max(FaceLabel):
+            raise ValueError(
+                f"labels: expected (H, W) uint8 up to {max(FaceLabel)}, "
+                f"got {labels.shape} {labels.dtype} up to {labels.max(initial=0)}"
+            )
+        if confidence.shape != labels.shape:
+            raise ValueError(f"confidence: expected the shape of labels {labels.shape}, got {confidence.shape}")
+        if not ((confidence >= 0) & (confidence <= 1)).all():
+            raise ValueError("confidence: expected numbers in [0, 1], got others or NaN")
+        for name, array in (("labels", labels), ("confidence", confidence)):
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+    def mask(self, *parts: FaceLabel) -> np.ndarray:
+        """Pixels (H, W) bool of any of these parts."""
+        return np.isin(self.labels, parts)
+
+
+class FaceParser(Protocol):
+    """Cuts a picture into the parts of a face; a network, say, or the classical parser."""
+
+    def __call__(self, img: np.ndarray, landmarks: np.ndarray, fit: "FittedFace | None" = None) -> FaceParse:
+        """Labels of the picture (H, W, 3) uint8 with landmarks (68, 2) px, NaN where missing, and the face fitted to it."""
+        ...
+
+
+class FittedFace(Protocol):
+    """What the stages share: a face mesh in the model frame, and the camera that saw it."""
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """(n, 3) mm, model frame."""
+        ...
+
+    @property
+    def faces(self) -> np.ndarray:
+        """(m, 3) int."""
+        ...
+
+    @property
+    def camera(self) -> HeadCamera:
+        """From the model frame to the picture."""
+        ...
+
+    def region(self, name: str) -> np.ndarray:
+        """(n,) bool: which vertices belong to the region."""
         ...
