@@ -162,7 +162,7 @@ class FaceParser(Protocol):
     """Cuts a picture into the parts of a face; a network, say, or the classical parser."""
 
     def __call__(self, img: np.ndarray, landmarks: np.ndarray, fit: "FittedFace | None" = None) -> FaceParse:
-        """Labels of the picture (H, W, 3) uint8 with landmarks (68, 2) px, NaN where missing, and the face fitted to it."""
+        """Labels of the picture (H, W, 3) uint8 with landmarks (68, 2) px, NaN where missing, and its fitted face."""
         ...
 
 
