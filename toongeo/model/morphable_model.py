@@ -9,6 +9,7 @@ import numpy as np
 from toongeo._read_only import read_only
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.eyeball_template import EyeballTemplate
+from toongeo.model.face_prior import FacePrior
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +42,8 @@ class MorphableModel:
     uv_faces : (m, 3) int64
     eyes : left and right eyeball
         Empty for a model that has none; the rig needs them.
+    prior : FacePrior or None
+        None where the mean is the likeliest face and annotators see its landmarks where they are.
     """
 
     mean: np.ndarray
@@ -59,9 +62,10 @@ class MorphableModel:
     uv: np.ndarray
     uv_faces: np.ndarray
     eyes: tuple[EyeballTemplate, ...] = ()
+    prior: FacePrior | None = None
 
     def __post_init__(self) -> None:
-        read_only(self, *(field.name for field in fields(self) if field.name != "eyes"))
+        read_only(self, *(field.name for field in fields(self) if field.name not in ("eyes", "prior")))
 
     def vertices(self, identity: np.ndarray | None = None, expression: np.ndarray | None = None) -> np.ndarray:
         """Vertices (n, 3), mm, for identity (k,) and expression (e,) coefficients; None is zero.

@@ -3,8 +3,15 @@
 import numpy as np
 import pytest
 
+from toongeo.model.artist_model import artist_model
 from toongeo.pipeline.fit.contour import visible_landmarks
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
+
+
+@pytest.fixture(scope="session")
+def artist():
+    """The template without a prior of people: its mean is the likeliest face, so exact landmarks give it back."""
+    return artist_model()
 
 
 @pytest.fixture(scope="session")

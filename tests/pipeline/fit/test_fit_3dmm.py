@@ -20,7 +20,7 @@ PICTURES = [
     "astronaut", "bad_guy", "beethoven", "blonde_girl_threequarter", "blue_girl", "manga_girl",
     "moustache_man",
 ]  # fmt: skip
-TIGHT = FitOptions(tolerance=1e-13)
+TIGHT = FitOptions(tolerance=1e-13, nod_deviation=1e6)
 
 
 def drawing(name):
@@ -40,9 +40,9 @@ def face():
 
 
 @pytest.mark.parametrize("yaw", [-40, -20, 0, 15, 40])
-def test_the_mean_face_is_found_with_its_pose(model, annotated, yaw):
+def test_the_mean_face_is_found_with_its_pose(artist, annotated, yaw):
     camera = ScaledOrthographicCamera.look(yaw=yaw, pitch=8, roll=-12, size=700)
-    fit = fit_3dmm(None, annotated(model, camera), options=TIGHT)
+    fit = fit_3dmm(None, annotated(artist, camera), model=artist, options=TIGHT)
     assert np.abs(coefficients(fit)).max() < 1e-5
     np.testing.assert_allclose(fit.camera.rotation, camera.rotation, atol=1e-6)
     np.testing.assert_allclose(fit.camera.scale, camera.scale, rtol=1e-6)
@@ -82,7 +82,7 @@ def test_the_minimum_is_one(face):
     options = FitOptions(tolerance=1e-14, max_passes=1)
     fit = fit_3dmm(None, face, options=options)
     problem = LandmarkFit.of(fit.model, face, options)
-    placed = visible_landmarks(problem.basis, np.zeros(144), problem.frame.rotation0)
+    placed = visible_landmarks(problem.basis, problem.start[:144], problem.frame.rotation0)
     loss = problem.loss(placed, problem.options.prior_weight, problem.trust)
     x = np.zeros(problem.unknowns.size)
     x[problem.unknowns.shape] = coefficients(fit)
@@ -117,7 +117,7 @@ def test_size_place_and_tilt_in_the_picture_change_nothing(picture, scale):
     turned = ScaledOrthographicCamera.look(roll=-35).rotation[:2, :2]
     shift = np.array([812.0, -95.0])
     fit, other = fit_3dmm(None, points), fit_3dmm(None, scale * points @ turned.T + shift)
-    np.testing.assert_allclose(coefficients(other), coefficients(fit), atol=1e-6)
+    np.testing.assert_allclose(coefficients(other), coefficients(fit), atol=1e-5)
     np.testing.assert_array_equal(other.landmark_vertices, fit.landmark_vertices)
     assert other.camera.scale == pytest.approx(scale * fit.camera.scale, rel=1e-8)
     np.testing.assert_allclose(
@@ -175,7 +175,7 @@ def test_a_missing_point_is_a_point_of_no_weight(face):
     np.testing.assert_allclose(
         coefficients(fit_3dmm(None, points, options=options)),
         coefficients(fit_3dmm(None, face, options=options)),
-        atol=1e-9,
+        atol=1e-6,
     )
 
 
@@ -199,12 +199,13 @@ def test_a_jaw_alone_has_no_inner_error(face):
 def test_drawings_give_plausible_faces(model, picture):
     fit = fit_3dmm(None, drawing(picture))
     weights = fit.expression_weights()
-    assert np.abs(coefficients(fit)).max() <= 3
+    away = fit.identity - model.prior.mean
+    assert np.abs(away).max() <= 3 and np.abs(fit.expression).max() <= 3
     assert min(weights.values()) >= 0
     assert max(weights.values()) <= 1
     assert weights["mouthClose"] == 0
     assert max(weights["eyeBlinkLeft"], weights["eyeBlinkRight"]) < 0.5
-    assert np.abs(coefficients(fit)[: len(fit.identity)]).mean() < 0.8
+    assert np.abs(away).mean() < 0.8
     assert abs(fit.camera.yaw) < 25
     # No face of the model looks like these; the prior keeps it a face and leaves the rest to the alignment.
     assert fit.report.rms_percent < (16 if picture == "beethoven" else 9)

@@ -6,6 +6,7 @@ from scipy.spatial.transform import Rotation
 
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
+from toongeo.pipeline.fit.nod_loss import NodLoss
 from toongeo.pipeline.fit.prior_loss import PriorLoss
 from toongeo.pipeline.fit.total_loss import TotalLoss
 from toongeo.pipeline.fit.unknowns import Unknowns
@@ -43,6 +44,12 @@ def x(unknowns):
     return x
 
 
+def mean(unknowns):
+    m = np.zeros(unknowns.size)
+    m[unknowns.identity] = np.linspace(-1, 2, unknowns.n_identity)
+    return m
+
+
 def direction(unknowns, block):
     d = np.zeros(unknowns.size)
     where = slice(None) if block == "everything" else getattr(unknowns, block)
@@ -51,13 +58,15 @@ def direction(unknowns, block):
 
 
 @pytest.mark.parametrize("block", BLOCKS)
-@pytest.mark.parametrize("term", ["landmark", "prior", "total"])
+@pytest.mark.parametrize("term", ["landmark", "prior", "nod", "total"])
 def test_taylor_slope(landmark_loss, unknowns, x, taylor_slope, block, term):
-    prior = PriorLoss(unknowns, 1.3, 4.0)
-    total = TotalLoss(landmark_loss, prior, 0.7, 1e-3)
-    loss = {"landmark": landmark_loss, "prior": prior, "total": total}[term]
+    prior = PriorLoss(unknowns, 1.3, 4.0, mean(unknowns))
+    nod = NodLoss(unknowns, landmark_loss.rotation0, 12.0)
+    total = TotalLoss(landmark_loss, prior, nod, 0.7, 1e-3)
+    loss = {"landmark": landmark_loss, "prior": prior, "nod": nod, "total": total}[term]
     d = direction(unknowns, block)
-    if term == "prior" and block in ("rotation", "log_scale", "translation"):
+    pose = block in ("rotation", "log_scale", "translation")
+    if (term == "prior" and pose) or (term == "nod" and block not in ("rotation", "everything")):
         assert loss(x)[1] @ d == 0
         assert loss(x + d)[0] == loss(x)[0]
     else:
@@ -92,8 +101,20 @@ def _rotation(x, unknowns):
 
 
 def test_eq_6_as_printed(unknowns, x):
-    value = PriorLoss(unknowns, 2.0, 5.0)(x)[0]
+    value = PriorLoss(unknowns, 2.0, 5.0, np.zeros(unknowns.size))(x)[0]
     assert value == pytest.approx(2 * np.sum(x[:80] ** 2) + 5 * np.sum(x[80:144] ** 2))
+    m = mean(unknowns)
+    moved = PriorLoss(unknowns, 2.0, 5.0, m)(x + m)
+    assert moved[0] == pytest.approx(value)
+    assert PriorLoss(unknowns, 2.0, 5.0, m)(m)[0] == 0
+
+
+@pytest.mark.parametrize("pitch", [-30.0, 0.0, 6.0, 45.0])
+@pytest.mark.parametrize(("yaw", "roll"), [(0, 0), (50, 0), (-20, 35)])
+def test_a_nod_costs_its_sine_and_turning_and_tilting_nothing(unknowns, yaw, pitch, roll):
+    rotation = ScaledOrthographicCamera.look(yaw=yaw, pitch=pitch, roll=roll).rotation
+    value = NodLoss(unknowns, rotation, 6.0)(np.zeros(unknowns.size))[0]
+    assert value == pytest.approx((np.sin(np.radians(pitch)) / np.radians(6.0)) ** 2, abs=1e-12)
 
 
 def test_jacobian_is_the_derivative_of_the_residuals(landmark_loss, unknowns, x):

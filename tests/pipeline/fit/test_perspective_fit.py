@@ -87,25 +87,25 @@ def test_a_viewer_at_infinity_sees_the_orthographic_picture(loss, unknowns, x):
 
 
 @pytest.mark.parametrize("yaw", [-30, 0, 20])
-def test_the_mean_face_is_found_with_its_pose(model, yaw):
-    points = camera(yaw).project(model.mean[model.landmarks])
+def test_the_mean_face_is_found_with_its_pose(artist, yaw):
+    points = camera(yaw).project(artist.mean[artist.landmarks])
     points[PARTS["jaw"]] = np.nan
-    options = FitOptions(camera="perspective", focal_px=900.0, robust=None, tolerance=1e-14)
-    fit = fit_3dmm(SIZE, points, options=options)
+    options = FitOptions(camera="perspective", focal_px=900.0, robust=None, tolerance=1e-14, nod_deviation=1e6)
+    fit = fit_3dmm(SIZE, points, model=artist, options=options)
     assert fit.camera.focal_px == pytest.approx(900.0)
     np.testing.assert_array_equal(fit.camera.principal_point, CENTRE)
     assert np.abs(np.concatenate([fit.identity, fit.expression])).max() < 1e-3
     np.testing.assert_allclose(fit.camera.rotation, camera(yaw).rotation, atol=1e-4)
     np.testing.assert_allclose(fit.camera.translation, [30, 25, -450], atol=0.2)
-    flat = fit_3dmm(SIZE, points, robust=None)
+    flat = fit_3dmm(SIZE, points, model=artist, robust=None)
     assert fit.report.rms_percent < 0.01 < flat.report.rms_percent
 
 
-def test_the_focal_length_is_found_roughly_when_the_face_is_known(model):
-    points = camera(25).project(model.mean[model.landmarks])
+def test_the_focal_length_is_found_roughly_when_the_face_is_known(artist):
+    points = camera(25).project(artist.mean[artist.landmarks])
     points[PARTS["jaw"]] = np.nan
-    stiff = FitOptions(camera="perspective", prior_weight=1.0, robust=None, tolerance=1e-14)
-    fit = fit_3dmm(SIZE, points, options=stiff)
+    stiff = FitOptions(camera="perspective", prior_weight=1.0, robust=None, tolerance=1e-14, nod_deviation=1e6)
+    fit = fit_3dmm(SIZE, points, model=artist, options=stiff)
     assert fit.camera.focal_px == pytest.approx(900.0, rel=0.02)
     assert -fit.camera.translation[2] == pytest.approx(450.0, rel=0.02)
 
@@ -132,7 +132,8 @@ def test_the_camera_meets_the_landmarks_that_the_report_says(model, random_face)
     projected = fit.project(fit.vertices[fit.landmark_vertices])
     assert np.sqrt(((projected - points)[17:] ** 2).sum(axis=1).mean()) == pytest.approx(fit.report.rms_px, rel=1e-4)
     both = fit_3dmm(None, points, camera="perspective", adjust="identity+expression")
-    assert both.report.rms_px < fit.report.rms_px
+    bent = both.project(both.vertices[fit.landmark_vertices])
+    assert np.linalg.norm(bent - points, axis=1).sum() < np.linalg.norm(projected - points, axis=1).sum()
 
 
 @pytest.mark.parametrize(

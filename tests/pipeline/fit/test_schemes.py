@@ -38,11 +38,12 @@ def test_an_unknown_scheme_lists_the_known_ones(points):
         fit_3dmm(None, points, scheme="ibug51")
 
 
-def test_a_table_of_the_inner_vertices_is_the_scheme_of_these(model, points):
-    """Up to the number of points, N in Eq. 4, which the weights undo."""
+def test_a_table_of_the_inner_vertices_is_the_scheme_of_these(artist, points):
+    """Where the model does not know the noise of each landmark; up to N in Eq. 4, which the weights undo."""
     options = FitOptions(robust=None, max_passes=1, tolerance=1e-12)
-    named = fit_3dmm(None, points[INNER], scheme="ibug51", options=options)
-    own = fit_3dmm(None, points[INNER], scheme=model.landmarks[INNER], options=options, landmark_weight=51 / 68)
+    named = fit_3dmm(None, points[INNER], model=artist, scheme="ibug51", options=options)
+    table = artist.landmarks[INNER]
+    own = fit_3dmm(None, points[INNER], model=artist, scheme=table, options=options, landmark_weight=51 / 68)
     np.testing.assert_allclose(own.vertices, named.vertices, atol=2e-3)
     assert own.report.rms_px == pytest.approx(named.report.rms_px, rel=1e-3)
 
@@ -75,7 +76,7 @@ def test_outliers_in_a_table_are_found(model, spots):
     pixels[[3, 50, 77]] += [150, -90]
     fit = fit_3dmm(None, pixels, scheme=spots)
     assert fit.report.outliers == (3, 50, 77)
-    assert np.linalg.norm(fit.vertices - clean.vertices, axis=1).max() < 0.3
+    assert np.linalg.norm(fit.vertices - clean.vertices, axis=1).max() < 0.6
 
 
 def test_bad_tables(model, points):

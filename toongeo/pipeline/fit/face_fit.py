@@ -29,7 +29,8 @@ class FitReport:
     passes, evaluations : int
         Placements of the jaw points; calls of the loss in all passes.
     landmark_loss, prior_loss : float
-        Eq. 4 (errors in outer-eye distances) and Eq. 6 of Pan et al. 2024, unweighted.
+        Eq. 4 (errors in outer-eye distances) and Eq. 6 of Pan et al. 2024, the latter with the prior on the pitch;
+        unweighted.
     prior_weight : float
         ``w_r`` of Eq. 3 in the last pass: that of the options, or more where the face misses its landmarks by much.
     loss : float

@@ -18,7 +18,8 @@ __all__ = ["FitOptions", "changed_options"]
 _MAY_BE_ZERO = ("jaw_weight", "jaw_tangent")
 CAMERAS = ("orthographic", "perspective")
 _NUMBERS = (
-    "landmark_weight", "prior_weight", "identity_weight", "expression_weight", "jaw_weight", "jaw_tangent",
+    "landmark_weight", "prior_weight", "landmark_deviation", "nod_deviation",
+    "identity_weight", "expression_weight", "jaw_weight", "jaw_tangent",
     "max_deviation", "max_passes", "tolerance", "max_evaluations",
 )  # fmt: skip
 
@@ -30,19 +31,21 @@ class FitOptions:
     Attributes
     ----------
     landmark_weight, prior_weight : float
-        ``w_l`` and ``w_r`` of Eq. 3 (Pan et al. 2024). Landmark errors are measured in outer-eye
-        distances, so ``prior_weight * 68`` is about the variance of a landmark in that unit. Where a face
-        (a caricature, say) misses its landmarks by more, ``w_r`` grows with the square of the misfit.
+        ``w_l`` and ``w_r`` of Eq. 3 (Pan et al. 2024). Landmark errors are measured in outer-eye distances.
+    landmark_deviation : float
+        Standard deviation of a landmark's coordinates between annotators, in outer-eye distances. Where a face (a
+        caricature, say) misses its landmarks by more, ``w_r`` grows with the square of the misfit.
     identity_weight, expression_weight : float
         ``w_id`` and ``w_exp`` of Eq. 6.
     jaw_weight : float
-        ``w_n`` of Eq. 4 for the 17 jaw points; the inner points have 1. Where an annotator puts a jaw
+        ``w_n`` of Eq. 4 for the 17 jaw points; the inner points have 1 (on average, where the model knows the noise of
+        each). Where an annotator puts a jaw
         point is a matter of taste, and with full weight they made the face worse in 3D than the mean face
         is.
     jaw_tangent : float in [0, 1]
         How much an error along the jaw's outline counts against one across it.
     max_deviation : float
-        Bound of identity and unnamed expression coefficients, in standard deviations.
+        Bound of identity and unnamed expression coefficients, in standard deviations from the likeliest ones.
     max_passes : int
         How often at most the jaw points are placed anew on their lines.
     tolerance : float
@@ -75,10 +78,12 @@ class FitOptions:
     """
 
     landmark_weight: float = 1.0
-    prior_weight: float = 1.5e-5
+    prior_weight: float = 4e-6
+    landmark_deviation: float = 0.014
+    nod_deviation: float = 6.0
     identity_weight: float = 1.0
-    expression_weight: float = 15.0
-    jaw_weight: float = 0.02
+    expression_weight: float = 4.0
+    jaw_weight: float = 0.015
     jaw_tangent: float = 0.35
     max_deviation: float = 3.0
     max_passes: int = 4

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.robust_weights import SETTLED, robust_weights
@@ -13,16 +14,24 @@ from toongeo.pipeline.fit.unknowns import Unknowns
 from toongeo.protocols import Coefficients
 from toongeo.render.camera import ScaledOrthographicCamera
 
-__all__ = ["held_bounds", "posing_trust", "principal_point_of", "start_vector"]
+__all__ = ["held_bounds", "likeliest", "posing_trust", "principal_point_of", "start_vector"]
 
 Floats = NDArray[np.float64]
 
 _POSING_PASSES = 4
 
 
-def start_vector(guess: Coefficients, unknowns: Unknowns) -> Floats:
-    """Unknowns (n,) at a guess, in the frame of its pose."""
+def likeliest(model: MorphableModel, unknowns: Unknowns) -> Floats:
+    """Unknowns (n,) of the likeliest face without expression, in the frame of its pose."""
     x = np.zeros(unknowns.size)
+    if model.prior is not None:
+        x[unknowns.identity] = model.prior.mean
+    return x
+
+
+def start_vector(guess: Coefficients, unknowns: Unknowns, expected: Floats) -> Floats:
+    """Unknowns (n,) at a guess, in the frame of its pose; what it does not tell is expected."""
+    x = expected.copy()
     for name, value in (("identity", guess.identity), ("expression", guess.expression)):
         where = getattr(unknowns, name)
         if value is None:

@@ -7,17 +7,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.model.face_prior import FacePrior
 from toongeo.model.ibug68 import INNER, OUTER_EYES, PARTS
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
 from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.fit_start import held_bounds, posing_trust, principal_point_of, start_vector
+from toongeo.pipeline.fit.fit_start import held_bounds, likeliest, posing_trust, principal_point_of, start_vector
 from toongeo.pipeline.fit.inner_error import inner_error
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
 from toongeo.pipeline.fit.landmark_table import LandmarkTable
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.nod_loss import NodLoss
 from toongeo.pipeline.fit.outlier_errors import NEIGHBOURS, outlier_errors
 from toongeo.pipeline.fit.prior_loss import PriorLoss
 from toongeo.pipeline.fit.robust_weights import SETTLED, robust_weights
@@ -32,6 +34,9 @@ Floats = NDArray[np.float64]
 
 _FEWEST = 6  # points from which the affine camera of the first pose is overdetermined
 # Box of the pose: a quarter turn from the first one, in each direction four times as large, 200 mm away.
+_CLICK_MM = 1.0  # standard deviation of a click, on the head
+_GROWTH = 4.0  # a loose first pass bends the face to most of what is odd: the misfit it leaves is a small part
+_ROUGH = 2.0  # times the expected misfit: what a single landmark may miss by without being odd at all
 _DISTRUST = 0.1  # a point with less robust weight is called an outlier
 # Inverse distances of a viewer whose focal length is not known, 1/mm: least, first, greatest.
 _NEARNESS = (1 / 5000, 1 / 1000, 1 / 350)
@@ -53,6 +58,8 @@ class LandmarkFit:
         These in the canonical frame, mm.
     weights : (k, 2, 2) float, 1/mm^2
         Their weights in Eq. 4, with errors in outer-eye distances.
+    offsets : (68, 3) float, mm, model frame
+        From the landmarks of the model to where annotators see them.
     prior : PriorLoss
     bounds : two (n,) arrays
     options : FitOptions
@@ -74,6 +81,7 @@ class LandmarkFit:
     seen: NDArray[np.int64]
     points: Floats
     weights: Floats
+    offsets: Floats
     prior: PriorLoss
     bounds: tuple[Floats, Floats]
     options: FitOptions
@@ -106,9 +114,13 @@ class LandmarkFit:
         inner = np.intersect1d(seen, INNER)
         posing = inner if table is None and len(inner) >= _FEWEST else seen
         own = None if table is None else table.rows(model)
-        start = start_vector(guess, unknowns)
-        # The mean face sets the unit of the errors, whatever the guess: where a fit starts is not what it minimises.
-        face = basis.at(basis.landmarks[posing])[0] if own is None else own[0][posing]
+        known = model.prior if table is None else None
+        offsets = np.zeros((68, 3)) if known is None else known.landmark_offsets
+        expected = likeliest(model, unknowns)
+        start = start_vector(guess, unknowns, expected)
+        # The expected face sets the unit of the errors, whatever the guess: a fit does not minimise where it starts.
+        mean, modes = basis.at(basis.landmarks) if own is None else own
+        face = (mean + (modes @ expected[unknowns.shape]).reshape(-1, 3) + (offsets if own is None else 0))[posing]
         trusted = posing_trust(face, pixels[posing], options)
         frame = canonical_frame(face, pixels[posing], trusted)
         if guess.pose is not None:
@@ -116,7 +128,7 @@ class LandmarkFit:
             turned = replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0)
             frame = turned if options.refine else posed
         principal_point = principal_point_of(options, image_centre, frame)
-        bounds = _bounds(model, unknowns, options.max_deviation)
+        bounds = _bounds(model, unknowns, expected, options.max_deviation)
         if unknowns.perspective:
             start[unknowns.translation] = -frame.from_pixels(principal_point)
             for bound in bounds:
@@ -133,8 +145,9 @@ class LandmarkFit:
             frame=frame,
             seen=seen,
             points=points[seen],
-            weights=_weights(points, options, table)[seen] / basis.outer_eye_mm**2,
-            prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight),
+            weights=_weights(points, known, frame.rotation0, options, table)[seen] / basis.outer_eye_mm**2,
+            offsets=offsets,
+            prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight, expected),
             bounds=bounds if options.refine else held_bounds(bounds, start, unknowns, guess.pose is not None),
             options=options,
             own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
@@ -148,8 +161,9 @@ class LandmarkFit:
     def solve(self, algorithm: str) -> Solution:
         """Minimise, place the jaw points anew, and again, until they stay or ``max_passes`` are done.
 
-        The prior assumes a landmark variance. What the first pass could not explain to that accuracy is a face
-        outside the model, and its misfit is the better estimate of the variance: the prior then counts the more.
+        Annotators differ, and the landmarks of a face in the model are met to about that accuracy. One that the first
+        pass misses by more is outside the model: its surplus misfit is a variance of the landmarks too, and the prior
+        then counts the more.
         A few points that lie far off beside the others are no face outside the model: they lose their weight, in
         the misfit and in the next pass.
         """
@@ -185,7 +199,8 @@ class LandmarkFit:
         prior_weight = placement.prior_weight
         if first:
             misfit = float((trust * np.einsum("ki,kij,kj->k", errors, self.weights, errors)).sum()) / self.count
-            prior_weight *= max(1.0, misfit / (prior_weight * self.count))
+            expected = 2 * self.options.landmark_deviation**2
+            prior_weight *= 1 + _GROWTH * max(0.0, misfit / expected - 1)
         return Placement(self._visible(x), trust, prior_weight)
 
     def settled(self, before: Placement, after: Placement) -> bool:
@@ -202,7 +217,7 @@ class LandmarkFit:
             camera=self.frame.camera(x, self.unknowns, self.principal_point),
             landmark_vertices=self._visible(x),
             landmark_loss=loss.landmark(x)[0],
-            prior_loss=loss.prior(x)[0],
+            prior_loss=loss.prior_value(x),
             prior_weight=loss.prior_weight,
             loss=loss(x)[0],
             status=status,
@@ -225,17 +240,32 @@ class LandmarkFit:
     def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float, trust: Floats | None = None) -> TotalLoss:
         """Eq. 3 with the landmarks (68,) at these vertices, this ``w_r``, and robust weights (k,)."""
         mean, modes = self.basis.at(landmark_vertices[self.seen]) if self.own is None else self.own
+        if self.own is None:
+            mean = mean + self.offsets[self.seen]
+        weights = self._evened(prior_weight)
         landmark = LandmarkLoss(
             unknowns=self.unknowns,
             points=self.points,
-            weights=self.weights if trust is None else trust[:, None, None] * self.weights,
+            weights=weights if trust is None else trust[:, None, None] * weights,
             count=self.count,
             mean=mean,
             modes=modes,
             rotation0=self.frame.rotation0,
             principal=self.frame.from_pixels(self.principal_point),
         )
-        return TotalLoss(landmark, self.prior, self.options.landmark_weight, prior_weight)
+        nod = NodLoss(self.unknowns, self.frame.rotation0, self.options.nod_deviation)
+        return TotalLoss(landmark, self.prior, nod, self.options.landmark_weight, prior_weight)
+
+    def _evened(self, prior_weight: float) -> Floats:
+        """Weights (k, 2, 2) under a raised ``w_r``: a misfit that all points share makes their own noise count less.
+
+        With the covariance ``W^-1`` of a point and the shared variance s these are ``(W^-1 + s I)^-1``, in units of
+        ``1 / (1 + s)``.
+        """
+        shared = prior_weight / self.options.prior_weight - 1
+        W = self.weights * self.basis.outer_eye_mm**2
+        evened = (1 + shared) * W @ np.linalg.inv(np.eye(2) + shared * W)
+        return evened / self.basis.outer_eye_mm**2
 
     def _trusted(self, residuals: Floats) -> Floats:
         """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
@@ -246,7 +276,7 @@ class LandmarkFit:
         reasons = outlier_errors(residuals, self.neighbours)
         costs = np.einsum("cki,kij,ckj->ck", reasons, self.weights, reasons).min(axis=0)
         squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
-        return robust_weights(squares, self.options.robust, self.count * self.options.prior_weight)
+        return robust_weights(squares, self.options.robust, (_ROUGH * self.options.landmark_deviation) ** 2)
 
     def _visible(self, x: Floats) -> NDArray[np.int64]:
         return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
@@ -262,21 +292,31 @@ def _neighbours(seen: NDArray[np.int64], table: LandmarkTable | None) -> NDArray
     return NEIGHBOURS[np.ix_(seen, seen)] if table is None else np.zeros((len(seen), len(seen)), bool)
 
 
-def _weights(points: Floats, options: FitOptions, table: LandmarkTable | None) -> Floats:
-    """Weights (k, 2, 2) of Eq. 4."""
+def _weights(
+    points: Floats, known: FacePrior | None, rotation: Floats, options: FitOptions, table: LandmarkTable | None
+) -> Floats:
+    """Weights (k, 2, 2) of Eq. 4: the precision of each point as this pose shows it, relative to an inner point.
+
+    The covariance of a point in the picture is that of its place on the head, projected, and that of a click.
+    """
     weights = np.tile(np.eye(2), (len(points), 1, 1))
     if table is not None:
         return weights
+    if known is not None:
+        spread = rotation[:2] @ known.landmark_covariance @ rotation[:2].T + _CLICK_MM**2 * np.eye(2)
+        precision = np.linalg.inv(spread)
+        weights = precision / (np.trace(precision[INNER], axis1=1, axis2=2).mean() / 2)
     weights[PARTS["jaw"]] = options.jaw_weight * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
     return weights
 
 
-def _bounds(model: MorphableModel, unknowns: Unknowns, deviation: float) -> tuple[Floats, Floats]:
+def _bounds(model: MorphableModel, unknowns: Unknowns, expected: Floats, deviation: float) -> tuple[Floats, Floats]:
     """Lower and upper bounds (n,) of all unknowns."""
     upper = np.full(unknowns.size, deviation)
     upper[unknowns.rotation], upper[unknowns.log_scale] = _TURN, _LOG_SCALE
     upper[unknowns.translation] = _SHIFT_MM
-    lower = -upper
+    lower = expected - upper
+    upper = expected + upper
     named = slice(unknowns.n_identity, unknowns.n_identity + model.n_named)
     lower[named], upper[named] = 0.0, 1.0
     if "mouthClose" in model.expression_names:

@@ -149,7 +149,7 @@ class PhotometricProblem:
             light=x[loss.photometric.light].reshape(9, 3),
             landmark_vertices=self._placed(z),
             landmark_loss=loss.geometry.landmark(z[:n])[0],
-            prior_loss=loss.geometry.prior(z[:n])[0],
+            prior_loss=loss.geometry.prior_value(z[:n]),
             loss=minimum.value,
             residuals=(ambient, before, self._rms(frozen, x, frozen.observe(x))),
             confident_fraction=float(frozen.weights.sum()),

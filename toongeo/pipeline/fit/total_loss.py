@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
+from toongeo.pipeline.fit.nod_loss import NodLoss
 from toongeo.pipeline.fit.prior_loss import PriorLoss
 
 __all__ = ["TotalLoss"]
@@ -17,10 +18,11 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class TotalLoss:
-    """Eq. 3 of Pan et al. 2024 without the photometric term: ``L = w_l L_lan + w_r L_reg``."""
+    """Eq. 3 of Pan et al. 2024 without the photometric term: ``L = w_l L_lan + w_r (L_reg + L_nod)``."""
 
     landmark: LandmarkLoss
     prior: PriorLoss
+    nod: NodLoss
     landmark_weight: float
     prior_weight: float
 
@@ -28,9 +30,15 @@ class TotalLoss:
         """Value and gradient (n,) at ``x`` (n,)."""
         landmark, landmark_slope = self.landmark(x)
         prior, prior_slope = self.prior(x)
-        value = self.landmark_weight * landmark + self.prior_weight * prior
-        return value, self.landmark_weight * landmark_slope + self.prior_weight * prior_slope
+        nod, nod_slope = self.nod(x)
+        value = self.landmark_weight * landmark + self.prior_weight * (prior + nod)
+        return value, self.landmark_weight * landmark_slope + self.prior_weight * (prior_slope + nod_slope)
+
+    def prior_value(self, x: Floats) -> float:
+        """``L_reg + L_nod`` at ``x`` (n,)."""
+        return self.prior(x)[0] + self.nod(x)[0]
 
     def curvature(self, x: Floats) -> Floats:
         """Diagonal (n,) of the Gauss-Newton matrix: what the variables are scaled by."""
-        return self.landmark_weight * self.landmark.curvature(x) + self.prior_weight * self.prior.curvature(x)
+        prior = self.prior.curvature(x) + self.nod.curvature(x)
+        return self.landmark_weight * self.landmark.curvature(x) + self.prior_weight * prior
