@@ -42,8 +42,8 @@ TRIMMED = 0.05  # share of the points, the farthest ones, that have no counterpa
 SKULL_MM, N_SKULL = 3.0, 60  # the scalp, which no landmark shows, stays near the template's; count as N_INDEPENDENT
 MEAN_EVIDENCE = 0.1  # of one subject
 ARTIST_SUBJECTS = 20  # how many subjects the artist's N(0, I) is worth
-# How far annotators are taken to follow this model's line of the jaw rather than the template's. Inner points do not
-# follow its definitions: offsets of these made faces no truer, and landmarks of photographs are nearer to the template's.
+# How far annotators are taken to follow this model's line of the jaw rather than the template's. Inner points keep the
+# template's definition: offsets of these made faces no truer, and landmarks of photographs are nearer to it.
 JAW_TRUST = 0.7
 POSES = 6  # of each subject, for the landmarks
 FLIP = np.array([-1.0, 1.0, 1.0])

@@ -4,6 +4,7 @@ import igl
 import numpy as np
 import pytest
 
+from toongeo.model.artist_model import artist_model
 from toongeo.render.camera import ScaledOrthographicCamera
 from toongeo.render.rasterize import rasterize
 
@@ -23,6 +24,12 @@ def intersecting(V, F):
     meshes.add_mesh(pymeshlab.Mesh(V, F))
     meshes.compute_selection_by_self_intersections_per_face()
     return meshes.current_mesh().selected_face_number() / len(F)
+
+
+@pytest.fixture(scope="module")
+def model():
+    """With the artist's modes, whose N(0, I) is wider than faces of people are."""
+    return artist_model()
 
 
 @pytest.fixture(scope="module")

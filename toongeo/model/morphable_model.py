@@ -65,6 +65,9 @@ class MorphableModel:
     prior: FacePrior | None = None
 
     def __post_init__(self) -> None:
+        if self.prior is not None and self.prior.mean.shape != (len(self.identity),):
+            expected = (len(self.identity),)
+            raise ValueError(f"prior: expected a mean of shape {expected}, got {self.prior.mean.shape}")
         read_only(self, *(field.name for field in fields(self) if field.name not in ("eyes", "prior")))
 
     def vertices(self, identity: np.ndarray | None = None, expression: np.ndarray | None = None) -> np.ndarray:

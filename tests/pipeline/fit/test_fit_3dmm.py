@@ -119,11 +119,11 @@ def test_size_place_and_tilt_in_the_picture_change_nothing(picture, scale):
     fit, other = fit_3dmm(None, points), fit_3dmm(None, scale * points @ turned.T + shift)
     np.testing.assert_allclose(coefficients(other), coefficients(fit), atol=1e-5)
     np.testing.assert_array_equal(other.landmark_vertices, fit.landmark_vertices)
-    assert other.camera.scale == pytest.approx(scale * fit.camera.scale, rel=1e-8)
+    assert other.camera.scale == pytest.approx(scale * fit.camera.scale, rel=1e-6)
     np.testing.assert_allclose(
         other.project(other.vertices), scale * fit.project(fit.vertices) @ turned.T + shift, atol=1e-4 * scale
     )
-    assert other.report.rms_percent == pytest.approx(fit.report.rms_percent, rel=1e-6)
+    assert other.report.rms_percent == pytest.approx(fit.report.rms_percent, rel=1e-5)
 
 
 @pytest.mark.parametrize("picture", PICTURES)

@@ -4,14 +4,14 @@ from scipy.spatial.transform import Rotation
 
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_eyes
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
-from toongeo.pipeline.rig.fit_eyes import _inset, _radius_within, _robust_sphere
+from toongeo.pipeline.rig.fit_eyes import RIM, _inset, _radius_within, _robust_sphere
 
 
 def test_sphere_through_exact_points_is_found(rng):
     directions = rng.normal(size=(60, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     points = np.array([1.0, 2, 3]) + 12 * directions
-    centre, radius = _robust_sphere(points, np.ones(60), np.array([1.2, 1.9, 3.1]), 12.1)
+    centre, radius = _robust_sphere(points, np.ones(60), np.array([1.2, 1.9, 3.1]), 12.1, RIM)
     np.testing.assert_allclose([*centre, radius], [1, 2, 3, 12], atol=0.05)
 
 
@@ -20,10 +20,10 @@ def test_the_sphere_is_robust_and_equivariant(rng):
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     points = 12 * directions
     points[:4] *= 3
-    centre, radius = _robust_sphere(points, np.ones(60), np.zeros(3), 12.0)
+    centre, radius = _robust_sphere(points, np.ones(60), np.zeros(3), 12.0, RIM)
     assert np.linalg.norm(centre) < 0.5
     R, t = Rotation.from_rotvec([0.1, 0.4, -0.8]).as_matrix(), np.array([5.0, -3, 8])
-    turned, again = _robust_sphere(2 * points @ R.T + t, np.ones(60), t, 24.0)
+    turned, again = _robust_sphere(2 * points @ R.T + t, np.ones(60), t, 24.0, RIM)
     np.testing.assert_allclose(turned, 2 * R @ centre + t, atol=1e-9)
     assert again == pytest.approx(2 * radius, rel=1e-12)
 

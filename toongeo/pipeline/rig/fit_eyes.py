@@ -20,7 +20,7 @@ CLEARANCE = 0.01  # of the radius: how far lids stay off the eyeball
 PRIOR = np.array([0.15, 0.15, 0.15, 0.03])
 BLINK_WEIGHTS = np.array([0.0, 0.25, 0.5, 0.75])  # at 1 the lids are put onto the eyeball
 LEAST_RADIUS = 0.8  # of the fitted radius: how far an eyeball shrinks at most to stay within a narrow head
-RIM = 0.04  # of the radius: s.d. of the lid rim about the sphere
+RIM = 0.04  # of the radius: s.d. of the lid rim about the sphere, at least
 HUBER = 2.0  # s.d. beyond which a rim vertex pulls with constant force
 
 
@@ -83,7 +83,10 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
         centre, radius = model.eyes[side].placed(face.fit.identity)
         ratios = np.linalg.norm(coarse - centre, axis=1) / radius
         scale, rotation, shift = similarity(coarse, face.vertices[rim])
-        centre, radius = _robust_sphere(face.vertices[rim], ratios, scale * rotation @ centre + shift, scale * radius)
+        carried = scale * coarse @ rotation.T + shift
+        misfit = np.sqrt(((carried - face.vertices[rim]) ** 2).sum(axis=1).mean())
+        centre, radius = scale * rotation @ centre + shift, scale * radius
+        centre, radius = _robust_sphere(face.vertices[rim], ratios, centre, radius, max(RIM, misfit / radius))
         around = face.vertices[model.region("skin") & ~model.region(f"eye_{name}")]
         radius, shrunk_from = _radius_within(around - centre, radius), radius
         centre = centre + (shrunk_from - radius) * GAZE
@@ -99,12 +102,13 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
 
 
 def _robust_sphere(
-    points: np.ndarray, ratios: np.ndarray, centre: np.ndarray, radius: float
+    points: np.ndarray, ratios: np.ndarray, centre: np.ndarray, radius: float, spread: float
 ) -> tuple[np.ndarray, float]:
     """Sphere from which points (k, 3) lie at ``ratios`` (k,) of its radius, held near a given centre and radius.
 
-    Gauss-Newton with Huber weights. The ratios are those of the template, whose lids do not touch its eyeball. A lid
-    rim is nearly flat, so that spheres of very different size suit it; the prior decides among them.
+    Gauss-Newton with Huber weights. The ratios are those of the template, whose lids do not touch its eyeball;
+    ``spread``, in radii, is their deviation: a round opening says little where the template's is an almond. A lid rim
+    is nearly flat, so that spheres of very different size suit it; the prior decides among them.
     """
     start = np.r_[centre, radius]
     x = start.copy()
@@ -112,9 +116,9 @@ def _robust_sphere(
     for _ in range(10):
         offset = points - x[:3]
         distance = np.linalg.norm(offset, axis=1)
-        residual = (distance - ratios * x[3]) / (RIM * radius)
+        residual = (distance - ratios * x[3]) / (spread * radius)
         weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residual), 1e-12))
-        J = np.column_stack([-offset / distance[:, None], -ratios]) / (RIM * radius)
+        J = np.column_stack([-offset / distance[:, None], -ratios]) / (spread * radius)
         H = J.T @ (weight[:, None] * J) + np.diag(precision)
         x = x - np.linalg.solve(H, J.T @ (weight * residual) + precision * (x - start))
     return x[:3], float(x[3])
