@@ -164,7 +164,8 @@ def main() -> None:
     table = np.array(table)
     met = [(table[:, k + 1] <= table[:, k]).sum() for k in (1, 4)]
     print(f"\nRMS at equal norm not larger than that of eos: {met[0]} of {len(table)} without contours, {met[1]} with;")
-    print(f"times as fast as eos with contours: {table[:, -1].min():.1f} at least, median {np.median(table[:, -1]):.1f}")
+    ratios = table[:, -1]
+    print(f"times as fast as eos with contours: {ratios.min():.1f} at least, {np.median(ratios):.1f} in the median.")
 
 
 if __name__ == "__main__":
