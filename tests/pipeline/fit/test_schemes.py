@@ -6,9 +6,10 @@ import pytest
 from toongeo.io import read_landmarks
 from toongeo.model import data_path
 from toongeo.model.ibug68 import INNER
+from toongeo.model.mediapipe478 import VERTICES
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.ibug_landmarks import SCHEMES, ibug_landmarks
+from toongeo.pipeline.fit.ibug_landmarks import PARTS_OF_IBUG, ibug_landmarks
 from toongeo.render import ScaledOrthographicCamera
 
 CAMERA = ScaledOrthographicCamera.look(yaw=18, pitch=-6, roll=9, size=600)
@@ -19,18 +20,42 @@ def points():
     return read_landmarks(data_path("examples/portraits/astronaut.pts"))
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("scheme", PARTS_OF_IBUG)
 def test_a_scheme_is_68_points_of_which_some_are_missing(points, scheme):
     holed = np.full((68, 2), np.nan)
-    holed[SCHEMES[scheme]] = points[SCHEMES[scheme]]
-    assert len(SCHEMES[scheme]) == int(scheme.removeprefix("ibug"))
-    np.testing.assert_array_equal(ibug_landmarks(points[SCHEMES[scheme]], scheme), holed)
-    found = fit_3dmm(None, points[SCHEMES[scheme]], scheme=scheme)
+    holed[PARTS_OF_IBUG[scheme]] = points[PARTS_OF_IBUG[scheme]]
+    assert len(PARTS_OF_IBUG[scheme]) == int(scheme.removeprefix("ibug"))
+    np.testing.assert_array_equal(ibug_landmarks(points[PARTS_OF_IBUG[scheme]], scheme), holed)
+    found = fit_3dmm(None, points[PARTS_OF_IBUG[scheme]], scheme=scheme)
     np.testing.assert_array_equal(found.vertices, fit_3dmm(None, holed).vertices)
 
 
+@pytest.mark.parametrize("count", [468, 478])
+def test_a_face_mesh_is_the_68_points_that_the_table_names(points, count):
+    mesh = np.random.default_rng(0).uniform(0, 1000, (count, 2))
+    mesh[VERTICES] = points
+    np.testing.assert_array_equal(ibug_landmarks(mesh, "mediapipe478"), points)
+    found, same = fit_3dmm(None, mesh, scheme="mediapipe478"), fit_3dmm(None, points)
+    np.testing.assert_array_equal(found.vertices, same.vertices)
+    assert found.report.rms_px == same.report.rms_px
+
+
+def test_a_face_mesh_of_another_size_or_in_shares_of_the_picture(points):
+    wanted = r"landmarks: expected shape \(478, 2\) or \(468, 2\) px for scheme 'mediapipe478', got "
+    with pytest.raises(ValueError, match=wanted + r"\(68, 2\)"):
+        fit_3dmm(None, points, scheme="mediapipe478")
+    with pytest.raises(ValueError, match=wanted + r"\(478, 3\)"):
+        fit_3dmm(None, np.zeros((478, 3)), scheme="mediapipe478")
+    shares = np.zeros((478, 2))
+    shares[VERTICES] = points / 1000
+    with pytest.raises(ValueError, match="landmarks: expected a face in pixels"):
+        fit_3dmm(None, shares, scheme="mediapipe478")
+
+
 def test_an_unknown_scheme_lists_the_known_ones(points):
-    with pytest.raises(ValueError, match="scheme: expected one of 'ibug68', 'ibug51', 'ibug49', got 'wflw98'"):
+    with pytest.raises(
+        ValueError, match="scheme: expected one of 'ibug68', 'ibug51', 'ibug49', 'mediapipe478', got 'wflw98'"
+    ):
         fit_3dmm(None, points, scheme="wflw98")
     with pytest.raises(ValueError, match="scheme: expected one of 'ibug68', .*or a table, got 'wflw98'"):
         ibug_landmarks(points, "wflw98")
