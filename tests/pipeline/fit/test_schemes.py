@@ -46,6 +46,10 @@ def test_a_face_mesh_of_another_size_or_in_shares_of_the_picture(points):
         fit_3dmm(None, points, scheme="mediapipe478")
     with pytest.raises(ValueError, match=wanted + r"\(478, 3\)"):
         fit_3dmm(None, np.zeros((478, 3)), scheme="mediapipe478")
+    with pytest.raises(ValueError, match="landmarks: expected numbers, got an array of complex128"):
+        fit_3dmm(None, np.zeros((478, 2), complex), scheme="mediapipe478")
+    with pytest.raises(ValueError, match="landmarks: expected at least one point, but all rows are NaN"):
+        fit_3dmm(None, np.full((478, 2), np.nan), scheme="mediapipe478")
     shares = np.zeros((478, 2))
     shares[VERTICES] = points / 1000
     with pytest.raises(ValueError, match="landmarks: expected a face in pixels"):
@@ -111,6 +115,12 @@ def test_bad_tables(model, points):
         ((np.full(68, 10**7), np.full((68, 3), 1 / 3)), r"scheme: expected faces in 0\.\."),
         ((np.arange(68), np.full((67, 3), 1 / 3)), r"scheme: expected weights of shape \(68, 3\), got \(67, 3\)"),
         ((np.arange(68), np.ones((68, 3))), "scheme: expected barycentric weights that sum to 1"),
+        ((np.arange(68), np.full((68, 3), np.nan)), "scheme: expected barycentric weights that sum to 1"),
+        ((np.arange(68), np.tile([np.inf, -np.inf, 1], (68, 1))), "scheme: expected barycentric weights that sum to 1"),
+        ((np.arange(68), np.full((68, 3), "a")), "scheme: expected numbers, got an array of <U1"),
+        ((np.arange(6), [[1, 2], [3]]), r"scheme: expected weights \(k, 3\), got rows of different lengths"),
+        ([[1, 2], [3]], "scheme: expected vertices .* as integers, got rows of different lengths"),
+        (None, r"scheme: expected at least 6 vertices .*, got shape \(\) of object"),
     ]:
         with pytest.raises(ValueError, match=message):
             fit_3dmm(None, points, scheme=scheme)
@@ -126,6 +136,7 @@ def test_bad_landmarks_of_a_table(model, points):
         (half, "landmarks: expected finite px, or NaN in both coordinates"),
         (infinite, "landmarks: expected finite px, or NaN in both coordinates"),
         (few, "landmarks: expected at least 6 points that are not NaN, got 5"),
+        (points.astype(str), "landmarks: expected numbers, got an array of <U"),
     ]:
         with pytest.raises(ValueError, match=message):
             fit_3dmm(None, landmarks, scheme=model.landmarks)

@@ -5,6 +5,8 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.io.landmark_array import landmark_array
+from toongeo.io.point_array import point_array
 from toongeo.model.ibug68 import INNER, LIP_RIMS
 from toongeo.model.mediapipe478 import N_MESH, N_WITH_IRISES, VERTICES
 
@@ -34,7 +36,7 @@ def ibug_landmarks(landmarks: ArrayLike, scheme: str = "ibug68") -> NDArray[np.f
     Raises
     ------
     ValueError
-        If the scheme is not known or its number of points is another.
+        If the scheme is not known, its number of points is another, or they are not numbers.
 
     Examples
     --------
@@ -48,8 +50,8 @@ def ibug_landmarks(landmarks: ArrayLike, scheme: str = "ibug68") -> NDArray[np.f
     if scheme not in SCHEMES:
         raise ValueError(f"scheme: expected one of {', '.join(map(repr, SCHEMES))}, or a table, got {scheme!r}")
     if scheme == "ibug68":
-        return np.array(landmarks, np.float64)  # its own checks say more about another shape
-    points = np.asarray(landmarks, np.float64)
+        return landmark_array(landmarks)  # says more about another shape
+    points = point_array(landmarks)
     if scheme == "mediapipe478":
         if points.shape not in ((N_WITH_IRISES, 2), (N_MESH, 2)):
             wanted = f"({N_WITH_IRISES}, 2) or ({N_MESH}, 2)"
