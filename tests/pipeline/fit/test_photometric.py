@@ -323,7 +323,7 @@ def test_a_mask_of_ones_says_everything_is_skin(subject, fitted):
 
 
 def test_a_mirrored_picture_gives_the_mirrored_face(model, cartoon, subject):
-    for picture, landmarks in (subject[:2], cartoon("astronaut")):
+    for picture, landmarks in (subject[:2], cartoon("astronaut"), cartoon("manga_girl")):
         flipped = np.ascontiguousarray(picture[:, ::-1])
         points = (landmarks * [-1, 1] + [picture.shape[1] - 1, 0])[MIRROR]
         one, other = (photometric_fit(p, fit_3dmm(p, q), q) for p, q in ((picture, landmarks), (flipped, points)))
