@@ -130,6 +130,12 @@ class LandmarkLoss:
         J = self.jacobian(x)
         return 2 / self.count * ((self.weights @ J) * J).sum(axis=(0, 1))
 
+    def pose_curvature(self, x: Floats) -> Floats:
+        """Rows (6, n) of the Gauss-Newton matrix that belong to rotation, scale and translation."""
+        J = self.jacobian(x).reshape(2 * len(self.points), -1)
+        Jp = J[:, self.unknowns.pose].reshape(-1, 2, 6)
+        return 2 / self.count * (self.weights @ Jp).reshape(-1, 6).T @ J
+
     def _rotation(self, x: Floats) -> Floats:
         return rotation_matrix(x[self.unknowns.rotation]) @ self.rotation0
 
