@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.io.point_array import point_array
+
 # Landmark schemes in use, by their number of points: what people pass by mistake.
 _SCHEMES = {
     5: "eye centres, nose and mouth corners",
@@ -17,19 +19,13 @@ _SCHEMES = {
 
 def landmark_array(landmarks: ArrayLike, name: str = "landmarks") -> NDArray[np.float64]:
     """Checked copy: (68, 2) float64, finite or NaN in whole rows, at least one row not NaN."""
-    try:
-        points = np.asarray(landmarks)
-    except ValueError:
-        raise ValueError(f"{name}: expected 68 rows of x and y, got rows of different lengths") from None
-    if points.dtype.kind not in "iuf":
-        raise ValueError(f"{name}: expected numbers, got an array of {points.dtype}")
+    points = point_array(landmarks, name, "68 rows of x and y")
     if points.ndim == 2 and points.shape[1] == 2 and len(points) != 68:
         hint = _SCHEMES.get(len(points))
         note = f" ({hint})" if hint else ""
         raise ValueError(f"{name}: expected 68 points in iBUG order, got {len(points)}{note}")
     if points.shape != (68, 2):
         raise ValueError(f"{name}: expected shape (68, 2), got {points.shape}")
-    points = points.astype(np.float64)
     if np.isinf(points).any():
         raise ValueError(f"{name}: expected finite px or NaN, got infinity in row {_first(np.isinf(points))}")
     missing = np.isnan(points)
@@ -41,5 +37,5 @@ def landmark_array(landmarks: ArrayLike, name: str = "landmarks") -> NDArray[np.
     return points
 
 
-def _first(mask: NDArray[np.bool_]) -> int:
+def _first(mask: ArrayLike) -> int:
     return int(np.argwhere(mask)[0, 0])

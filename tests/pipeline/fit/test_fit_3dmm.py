@@ -310,6 +310,9 @@ def test_bad_landmarks(face):
         (np.column_stack([np.arange(68), np.arange(68)]).astype(float), "landmarks: .*line"),
         (infinite, "landmarks: expected finite"),
         (face * [-1, 1] + [600, 0], "landmarks: .*mirrored"),
+        (face.astype(str), "landmarks: expected numbers, got an array of <U"),
+        (face + 1j, "landmarks: expected numbers, got an array of complex128"),
+        ([[1, 2], [3]], "landmarks: expected 68 rows of x and y, got rows of different lengths"),
     ]:
         with pytest.raises(ValueError, match=message):
             fit_3dmm(None, landmarks)
@@ -322,8 +325,14 @@ def test_landmarks_of_another_picture(face):
 
 @pytest.mark.parametrize("shape", [(0, 0, 3), (0, 40, 3), (40, 40), (40, 40, 4), (3,)])
 def test_pictures_of_another_shape(face, shape):
-    with pytest.raises(ValueError, match=r"img: expected shape \(H, W, 3\) with H, W >= 1, got"):
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8 RGB, got uint8 of shape"):
         fit_3dmm(np.zeros(shape, np.uint8), face)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, 0.5, True])
+def test_pictures_that_are_not_bytes(face, value):
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8 RGB, got (float64|bool) of shape"):
+        fit_3dmm(np.full((600, 600, 3), value), face)
 
 
 def test_an_unknown_algorithm(face):

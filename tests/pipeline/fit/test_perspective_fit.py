@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from toongeo.model.ibug68 import PARTS
+from toongeo.io import read_landmarks
+from toongeo.model import data_path
+from toongeo.model.ibug68 import MIRROR, PARTS
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
@@ -124,6 +126,26 @@ def test_size_of_the_picture_changes_nothing(model, random_face, focal):
     )
     np.testing.assert_allclose(second.vertices, first.vertices, atol=5e-3)
     assert second.camera.focal_px == pytest.approx(3 * first.camera.focal_px, rel=1e-3)
+
+
+@pytest.mark.parametrize("picture", ["astronaut", "beethoven", "blonde_girl_threequarter", "manga_girl"])
+@pytest.mark.parametrize("focal", [1200.0, None])
+def test_mirrored_landmarks_give_the_mirrored_face(model, picture, focal):
+    points = read_landmarks(data_path(f"examples/portraits/{picture}.pts"))
+    options = FitOptions(camera="perspective", focal_px=focal)
+    fit = fit_3dmm(None, points, options=options)
+    other = fit_3dmm(None, (points * [-1, 1] + [999, 0])[MIRROR], options=options)
+    # Vertices are summed in float32: 1e-5 mm is their rounding. At the landmarks the sums are in float64.
+    np.testing.assert_allclose(other.vertices[model.mirror] * [-1, 1, 1], fit.vertices, atol=2e-5)
+    basis = landmark_basis(model)
+    rows = basis.rows(model.landmarks)
+    here, there = (basis.positions(np.concatenate([face.identity, face.expression]))[rows] for face in (fit, other))
+    np.testing.assert_allclose(there[MIRROR] * [-1, 1, 1], here, atol=1e-6)
+    np.testing.assert_allclose(other.camera.translation * [-1, 1, 1], fit.camera.translation, atol=1e-6)
+    np.testing.assert_allclose(other.camera.principal_point * [-1, 1] + [999, 0], fit.camera.principal_point, atol=1e-6)
+    assert other.camera.yaw == pytest.approx(-fit.camera.yaw, abs=1e-6)
+    assert other.camera.focal_px == pytest.approx(fit.camera.focal_px, rel=1e-6)
+    np.testing.assert_array_equal(model.mirror[other.landmark_vertices[MIRROR]], fit.landmark_vertices)
 
 
 def test_the_camera_meets_the_landmarks_that_the_report_says(model, random_face):

@@ -323,7 +323,7 @@ def test_a_mask_of_ones_says_everything_is_skin(subject, fitted):
 
 
 def test_a_mirrored_picture_gives_the_mirrored_face(model, cartoon, subject):
-    for picture, landmarks in (subject[:2], cartoon("astronaut")):
+    for picture, landmarks in (subject[:2], cartoon("astronaut"), cartoon("manga_girl")):
         flipped = np.ascontiguousarray(picture[:, ::-1])
         points = (landmarks * [-1, 1] + [picture.shape[1] - 1, 0])[MIRROR]
         one, other = (photometric_fit(p, fit_3dmm(p, q), q) for p, q in ((picture, landmarks), (flipped, points)))
@@ -411,8 +411,18 @@ def test_bad_pictures_and_masks(subject, fitted):
     ]:
         with pytest.raises(ValueError, match=message):
             photometric_fit(img, fitted[0], landmarks, mask=mask)
-    with pytest.raises(ValueError, match=r"landmarks: expected shape \(68, 2\), got \(51, 2\)"):
-        photometric_fit(picture, fitted[0], landmarks[:51])
+    infinite, half, few = landmarks.copy(), landmarks.copy(), landmarks.copy()
+    infinite[3], half[3, 1], few[5:] = np.inf, np.nan, np.nan
+    for points, message in [
+        (landmarks[:51], "landmarks: expected 68 points in iBUG order, got 51"),
+        (infinite, "landmarks: expected finite px or NaN, got infinity in row 3"),
+        (half, "landmarks: a missing point has NaN in both coordinates"),
+        (few, "landmarks: expected at least 6 points that are not NaN, got 5"),
+        (landmarks + 5000, "landmarks: .* points lie outside"),
+        (landmarks.astype(str), "landmarks: expected numbers, got an array of <U"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            photometric_fit(picture, fitted[0], points)
     with pytest.raises(ValueError, match="img: expected one picture for the photometric term, got None"):
         fit_3dmm(None, landmarks, photometric=True)
 
@@ -425,6 +435,14 @@ def test_what_the_photometric_term_would_undo_is_refused(subject, fitted):
         fit_3dmm(picture, landmarks, photometric=True, adjust="expression")
     with pytest.raises(ValueError, match="fit_options: expected the orthographic camera, got 'perspective'"):
         photometric_fit(picture, fitted[0], landmarks, fit_options=FitOptions(camera="perspective"))
+
+
+def test_landmarks_of_a_table_are_refused(model, subject, fitted):
+    picture, landmarks = subject[:2]
+    with pytest.raises(ValueError, match="scheme: expected a scheme by name with the photometric term, got a table"):
+        fit_3dmm(picture, landmarks, photometric=True, scheme=model.landmarks)
+    with pytest.raises(ValueError, match="fit_options: expected a scheme by name, whose 68 points these are"):
+        photometric_fit(picture, fitted[0], landmarks, fit_options=FitOptions(scheme=model.landmarks))
 
 
 def test_a_black_picture_gives_no_light(subject, fitted):
@@ -449,6 +467,10 @@ def test_what_needs_albedo_and_light_says_so(subject, fitted):
         ("albedo_weight", float("nan"), "albedo_weight: expected a finite number > 0"),
         ("passes", 0, "passes: expected an integer >= 1, got 0"),
         ("samples", 10.5, "samples: expected an integer >= 1, got 10.5"),
+        ("passes", True, "passes: expected an integer >= 1, got True"),
+        ("blur", "1", "blur: expected a finite number > 0, got '1'"),
+        ("tolerance", None, "tolerance: expected a finite number > 0, got None"),
+        ("noise", np.ones(2), "noise: expected a finite number > 0, got array"),
     ],
 )
 def test_bad_options(name, value, message):

@@ -96,6 +96,8 @@ def test_coefficients_are_read_only_copies():
 def test_bad_regressors(points):
     with pytest.raises(ValueError, match=r"regressor: expected identity of shape \(80,\), got \(79,\)"):
         fit_3dmm(None, points, regressor=lambda *_: Coefficients(identity=np.zeros(79)))
+    with pytest.raises(ValueError, match="regressor: expected one that returns Coefficients, got ndarray"):
+        fit_3dmm(None, points, regressor=lambda *_: np.zeros(80))
     with pytest.raises(ValueError, match="expression: expected finite numbers or None"):
         Coefficients(expression=np.array([np.nan]))
     with pytest.raises(ValueError, match="refine: expected a regressor whose answer is not to be refined"):

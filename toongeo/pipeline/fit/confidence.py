@@ -43,7 +43,8 @@ def skin_likelihood(plane: PicturePlane, core: Floats) -> NDArray[np.float32]:
 
 def _around_mode(features: Floats) -> NDArray[np.bool_]:
     """Which points (k,) lie around the densest place: where a Gaussian of unit spread catches most of them."""
-    voters = features[:: max(1, len(features) // _VOTERS)]
+    # Every so many of them by brightness, not by vertex: a mirrored picture has the same voters.
+    voters = features[np.argsort(features[:, 0])][:: max(1, len(features) // _VOTERS)]
     distance2 = ((voters[:, None] - voters) ** 2).sum(axis=2)
     mode = voters[np.exp(-distance2 / 2).sum(axis=1).argmax()]
     return ((features - mode) ** 2).sum(axis=1) < _REACH**2

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry.one_thread import one_thread
+from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
 from toongeo.model.default_model import default_model
 from toongeo.model.morphable_model import MorphableModel
@@ -84,9 +85,9 @@ def fit_3dmm(
 
     Parameters
     ----------
-    img : (H, W, 3) array or None, or a list of these
-        The picture; here only its size is looked at, to check the landmarks against. A list: pictures of one
-        person, who has one identity in all of them, and an expression and a pose in each.
+    img : (H, W, 3) uint8 array or None, or a list of these
+        The picture; without the photometric term only its size is looked at, to check the landmarks against. A list:
+        pictures of one person, who has one identity in all of them, and an expression and a pose in each.
     landmarks : (68, 2) array_like, px
         iBUG-68 order, or as ``scheme`` says; x right, y down, integer = pixel centre. A NaN row is a missing point.
         With a list of pictures, a list of as many.
@@ -112,10 +113,11 @@ def fit_3dmm(
     Raises
     ------
     ValueError
-        If the landmarks have another shape, hold infinities, are fewer than 6, coincide, lie on a line or
-        outside the picture, or the algorithm is not known. If a regressor's coefficients have another shape, or there
-        are more or fewer landmarks than pictures. If ``photometric`` is asked for with no picture or several,
-        with ``adjust``, a landmark table or a perspective camera.
+        If the landmarks are not numbers, have another shape, hold infinities, are fewer than 6, coincide, lie on a
+        line or outside the picture; the picture is not (H, W, 3) uint8; the algorithm is not known. If a regressor
+        returns something else than coefficients, or of another shape, or there are more or fewer landmarks than
+        pictures. If ``photometric`` is asked for with no picture or several, with ``adjust``, a landmark table or a
+        perspective camera.
     RuntimeError
         If the optimizer fails.
 
@@ -171,6 +173,8 @@ def _check_photometric(img: Any, options: FitOptions) -> None:
     if img is None or isinstance(img, list):
         got = "None" if img is None else f"{len(img)} pictures, whose shared identity each would change"
         raise ValueError(f"img: expected one picture for the photometric term, got {got}")
+    if not isinstance(options.scheme, str):
+        raise ValueError("scheme: expected a scheme by name with the photometric term, got a table")
     if options.adjust is not None:
         raise ValueError(f"adjust: expected None with the photometric term, which has a prior, got {options.adjust!r}")
 
@@ -199,7 +203,9 @@ def _task(
     options: FitOptions,
     regressor: Regressor | None,
 ) -> _Task:
-    image_shape, table = _image_shape(img), None
+    if img is not None:
+        check_image(img)
+    image_shape, table = None if img is None else img.shape, None
     warnings: list[str] = []
     if isinstance(options.scheme, str):
         pixels = ibug_landmarks(landmarks, options.scheme)
@@ -208,6 +214,8 @@ def _task(
         table = landmark_table(options.scheme, model)
         pixels = table_landmarks(landmarks, table)
     guess = Coefficients() if regressor is None else regressor(img, pixels.copy())
+    if not isinstance(guess, Coefficients):
+        raise ValueError(f"regressor: expected one that returns Coefficients, got {type(guess).__name__}")
     with one_thread():
         problem = LandmarkFit.of(model, pixels, options, guess, table, _centre(image_shape))
     return _Task(model, problem, pixels, guess, warnings)
@@ -246,12 +254,3 @@ def _face(task: _Task, solution: Solution, algorithm: str, seconds: float) -> Fa
 
 def _centre(image_shape: tuple[int, ...] | None) -> NDArray[np.float64] | None:
     return None if image_shape is None else np.array([image_shape[1] - 1, image_shape[0] - 1]) / 2
-
-
-def _image_shape(img: NDArray[np.uint8] | None) -> tuple[int, ...] | None:
-    if img is None:
-        return None
-    shape = np.shape(img)
-    if len(shape) != 3 or shape[2] != 3 or min(shape) < 1:
-        raise ValueError(f"img: expected shape (H, W, 3) with H, W >= 1, got {shape}")
-    return shape

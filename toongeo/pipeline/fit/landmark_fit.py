@@ -12,6 +12,7 @@ from toongeo.model.ibug68 import INNER, OUTER_EYES, PARTS
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
 from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
+from toongeo.pipeline.fit.decoupled_pose import decoupled_pose
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.fit_start import held_bounds, likeliest, posing_trust, principal_point_of, start_vector
 from toongeo.pipeline.fit.inner_error import inner_error
@@ -171,16 +172,17 @@ class LandmarkFit:
         passes = evaluations = 0
         while passes < self.options.max_passes:
             loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
+            decoupled = decoupled_pose(loss, x)
             minimum = nlopt_minimize(
-                loss,
+                decoupled,
                 x,
                 bounds=self.bounds,
-                scale=1 / np.sqrt(loss.curvature(x)),
+                scale=1 / np.sqrt(decoupled.curvature),
                 algorithm=algorithm,
                 tolerance=self.options.tolerance,
                 max_evaluations=self.options.max_evaluations,
             )
-            x = minimum.x
+            x = decoupled.x(minimum.x)
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
             before, placement = placement, self.renewed(placement, x, first=passes == 1)
             if self.settled(before, placement):

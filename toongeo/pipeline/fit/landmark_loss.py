@@ -82,11 +82,11 @@ class LandmarkLoss:
             e = seen * growth[:, None] + self.principal - self.points
         else:
             e = seen - self.points
-        weighted = (self.weights @ e[:, :, None])[:, :, 0] / self.count
+        weighted = np.einsum("kij,kj->ki", self.weights, e) / self.count
 
         gradient = np.empty(u.size)
         # dL/dy; without perspective the third row is zero because P drops the depth.
-        pull = np.zeros_like(y)
+        pull = np.zeros(y.shape)
         pull[:, :2] = 2 * weighted
         if u.perspective:
             slope = (pull[:, :2] * seen).sum(axis=1) * growth**2
@@ -99,8 +99,8 @@ class LandmarkLoss:
         torque = np.array([C[1, 2] - C[2, 1], C[2, 0] - C[0, 2], C[0, 1] - C[1, 0]])
         gradient[u.rotation] = left_jacobian(x[u.rotation]).T @ torque
         gradient[u.log_scale] = C[0, 0] + C[1, 1] + C[2, 2]
-        gradient[u.translation] = pull[:, :2].sum(axis=0)
-        return float((weighted * e).sum()), gradient
+        gradient[u.translation] = np.ones(len(y)) @ pull[:, :2]
+        return float(np.vdot(weighted, e)), gradient
 
     def jacobian(self, x: Floats) -> Floats:
         """Derivative (k, 2, n) of the residuals."""
@@ -129,6 +129,12 @@ class LandmarkLoss:
         """Diagonal (n,) of the Gauss-Newton matrix ``2/N sum_n J_n^T W_n J_n``."""
         J = self.jacobian(x)
         return 2 / self.count * ((self.weights @ J) * J).sum(axis=(0, 1))
+
+    def pose_curvature(self, x: Floats) -> Floats:
+        """Rows (6, n) of the Gauss-Newton matrix that belong to rotation, scale and translation."""
+        J = self.jacobian(x).reshape(2 * len(self.points), -1)
+        Jp = J[:, self.unknowns.pose].reshape(-1, 2, 6)
+        return 2 / self.count * (self.weights @ Jp).reshape(-1, 6).T @ J
 
     def _rotation(self, x: Floats) -> Floats:
         return rotation_matrix(x[self.unknowns.rotation]) @ self.rotation0

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.io.point_array import point_array
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["LandmarkTable", "landmark_table", "table_landmarks"]
@@ -58,12 +59,12 @@ def landmark_table(table: Any, model: MorphableModel) -> LandmarkTable:
     ValueError
         If shapes do not fit, an index is not in the model, or weights do not sum to 1.
     """
-    if isinstance(table, tuple) and len(table) == 2 and np.ndim(table[1]) == 2:
+    if isinstance(table, tuple) and len(table) == 2:
         faces = _indices(table[0], len(model.faces), "faces")
-        weights = np.array(table[1], np.float64)
+        weights = point_array(table[1], "scheme", "weights (k, 3)")
         if weights.shape != (len(faces), 3):
             raise ValueError(f"scheme: expected weights of shape ({len(faces)}, 3), got {weights.shape}")
-        if not np.allclose(weights.sum(axis=1), 1.0, atol=1e-6):
+        if not (np.isfinite(weights).all() and np.allclose(weights.sum(axis=1), 1.0, atol=1e-6)):
             raise ValueError("scheme: expected barycentric weights that sum to 1 in every row")
         return LandmarkTable(model.faces[faces], weights)
     vertices = _indices(table, len(model.mean), "vertices")
@@ -71,7 +72,10 @@ def landmark_table(table: Any, model: MorphableModel) -> LandmarkTable:
 
 
 def _indices(values: Any, count: int, name: str) -> NDArray[np.int64]:
-    indices = np.asarray(values)
+    try:
+        indices = np.asarray(values)
+    except ValueError:
+        raise ValueError(f"scheme: expected {name} (k,) as integers, got rows of different lengths") from None
     if indices.ndim != 1 or indices.dtype.kind not in "iu" or len(indices) < _FEWEST:
         raise ValueError(
             f"scheme: expected at least {_FEWEST} {name} (k,) as integers, got shape {indices.shape} of {indices.dtype}"
@@ -87,9 +91,9 @@ def table_landmarks(landmarks: ArrayLike, table: LandmarkTable) -> Floats:
     Raises
     ------
     ValueError
-        If the shape is another, a row is half missing or infinite, or fewer than six points are there.
+        If they are not numbers or of another shape, a row is half missing or infinite, or fewer than six are there.
     """
-    pixels = np.array(landmarks, np.float64)
+    pixels = point_array(landmarks)
     if pixels.shape != (len(table.corners), 2):
         raise ValueError(f"landmarks: expected shape ({len(table.corners)}, 2) to go with scheme, got {pixels.shape}")
     missing = np.isnan(pixels)
@@ -97,7 +101,5 @@ def table_landmarks(landmarks: ArrayLike, table: LandmarkTable) -> Floats:
         raise ValueError("landmarks: expected finite px, or NaN in both coordinates of a row")
     there = int((~missing[:, 0]).sum())
     if there < _FEWEST:
-        raise ValueError(
-            f"landmarks: expected at least {_FEWEST} points that are not NaN, got {(~missing[:, 0]).sum()}"
-        )
+        raise ValueError(f"landmarks: expected at least {_FEWEST} points that are not NaN, got {there}")
     return pixels

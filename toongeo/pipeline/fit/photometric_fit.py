@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_image import check_image
+from toongeo.io.check_landmarks import check_landmarks
+from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.pipeline.fit.face_fit import FaceFit, PhotometricReport
 from toongeo.pipeline.fit.fit_options import FitOptions
@@ -65,7 +67,8 @@ def photometric_fit(
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, the mask has another size or other values, nothing of the face is in
-        both picture and mask, the landmarks are not (68, 2), or ``fit_options`` ask for a perspective camera.
+        both picture and mask, the landmarks are not 68 or not those of a face in the picture (see
+        `toongeo.io.check_landmarks`), or ``fit_options`` ask for a perspective camera or a landmark table.
     RuntimeError
         If the optimizer fails.
 
@@ -78,12 +81,13 @@ def photometric_fit(
     started = time.perf_counter()
     check_image(img)
     confidence = _checked_mask(mask, img.shape[:2])
-    pixels = np.array(landmarks, np.float64)
-    if pixels.shape != (68, 2):
-        raise ValueError(f"landmarks: expected shape (68, 2), got {pixels.shape}")
+    pixels = landmark_array(landmarks)
+    check_landmarks(pixels, img.shape)
     fit_options = fit_options or FitOptions()
     if fit_options.camera != "orthographic":
         raise ValueError(f"fit_options: expected the orthographic camera, got {fit_options.camera!r}")
+    if not isinstance(fit_options.scheme, str):
+        raise ValueError("fit_options: expected a scheme by name, whose 68 points these are, got a table")
     with one_thread():
         problem = PhotometricProblem.of(img, fit, pixels, confidence, options or PhotometricOptions(), fit_options)
         solution = problem.solve()

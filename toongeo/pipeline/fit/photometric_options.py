@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-import numpy as np
+from toongeo.pipeline.fit.check_positive import check_positive
 
 __all__ = ["PhotometricOptions"]
 
@@ -62,8 +62,4 @@ class PhotometricOptions:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = getattr(self, field.name)
-            if field.name in _COUNTED and not (isinstance(value, int) and value >= 1):
-                raise ValueError(f"{field.name}: expected an integer >= 1, got {value!r}")
-            if not (np.isfinite(value) and value > 0):
-                raise ValueError(f"{field.name}: expected a finite number > 0, got {value!r}")
+            check_positive(field.name, getattr(self, field.name), whole=field.name in _COUNTED)

@@ -20,6 +20,8 @@ def solve_together(problems: Sequence[LandmarkFit], algorithm: str) -> list[Solu
     The passes are those of `LandmarkFit.solve`, in step: all pictures are minimised as one, and then the jaw
     points and the robust weights of each are renewed. Status, passes and evaluations are those of all.
     """
+    if len(problems) == 1:
+        return [problems[0].solve(algorithm)]
     options = problems[0].options
     placements = [problem.placement(problem.start) for problem in problems]
     parts = [problem.start for problem in problems]

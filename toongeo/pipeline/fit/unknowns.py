@@ -40,6 +40,11 @@ class Unknowns:
         return slice(self.n_coefficients + 4, self.n_coefficients + 6)
 
     @property
+    def pose(self) -> slice:
+        """Rotation, scale and translation together."""
+        return slice(self.n_coefficients, self.n_coefficients + 6)
+
+    @property
     def inverse_distance(self) -> int:
         """Of the viewer, where the scale is that of the frame; only in perspective."""
         return self.n_coefficients + 6
