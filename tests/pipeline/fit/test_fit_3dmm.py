@@ -284,6 +284,11 @@ def test_a_stop_after_few_evaluations_says_so(face):
     assert report.evaluations <= 6
 
 
+def test_a_stop_after_too_long_says_so(face):
+    report = fit_3dmm(None, face, options=FitOptions(max_seconds=1e-9, max_passes=1)).report
+    assert report.status == "MAXTIME_REACHED"
+
+
 def test_doubts_about_the_landmarks_are_handed_on(face):
     size = int(face.max()) - 5  # the outermost point is just outside
     report = fit_3dmm(np.zeros((size, size, 3), np.uint8), face).report
@@ -362,6 +367,11 @@ def test_a_model_without_the_68_landmarks(model, face):
         ("max_evaluations", 10.5, "max_evaluations: expected an integer >= 1, got 10.5"),
         ("jaw_weight", -0.1, "jaw_weight: expected a finite number >= 0, got -0.1"),
         ("tolerance", float("inf"), "tolerance: expected a finite number > 0"),
+        ("prior_weight", "1", "prior_weight: expected a finite number > 0, got '1'"),
+        ("prior_weight", True, "prior_weight: expected a finite number > 0, got True"),
+        ("nod_deviation", 0.0, "nod_deviation: expected a finite number > 0, got 0.0"),
+        ("max_seconds", 0.0, "max_seconds: expected a finite number > 0, got 0.0"),
+        ("refine", 1, "refine: expected one of True, False, got 1"),
         ("jaw_tangent", 1.5, r"jaw_tangent: expected a number in \[0, 1\], got 1.5"),
     ],
 )

@@ -164,7 +164,7 @@ def test_the_camera_meets_the_landmarks_that_the_report_says(model, random_face)
         ({"camera": "fisheye"}, "camera: expected one of 'orthographic', 'perspective', got 'fisheye'"),
         ({"focal_px": 900.0}, "focal_px: expected camera='perspective' to go with it, got 'orthographic'"),
         ({"principal_point": (1.0, 2.0)}, "principal_point: expected camera='perspective'"),
-        ({"camera": "perspective", "focal_px": 0.0}, "focal_px: expected a finite number > 0 or None"),
+        ({"camera": "perspective", "focal_px": 0.0}, "focal_px: expected a finite number > 0"),
         ({"camera": "perspective", "principal_point": (1.0,)}, "principal_point: expected 2 finite numbers"),
     ],
 )

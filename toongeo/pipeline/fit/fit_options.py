@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS
+from toongeo.pipeline.fit.check_positive import check_positive
 from toongeo.pipeline.fit.ibug_landmarks import SCHEMES
 from toongeo.pipeline.fit.robust_weights import KERNELS
 
@@ -17,10 +18,10 @@ __all__ = ["FitOptions", "changed_options"]
 
 _MAY_BE_ZERO = ("jaw_weight", "jaw_tangent")
 CAMERAS = ("orthographic", "perspective")
+_COUNTS = ("max_passes", "max_evaluations")
 _NUMBERS = (
-    "landmark_weight", "prior_weight", "landmark_deviation", "nod_deviation",
-    "identity_weight", "expression_weight", "jaw_weight", "jaw_tangent",
-    "max_deviation", "max_passes", "tolerance", "max_evaluations",
+    "landmark_weight", "prior_weight", "landmark_deviation", "nod_deviation", "identity_weight",
+    "expression_weight", "jaw_weight", "jaw_tangent", "max_deviation", "tolerance",
 )  # fmt: skip
 
 
@@ -52,6 +53,8 @@ class FitOptions:
         Relative change of the loss at which a pass stops.
     max_evaluations : int
         Of the loss, in one pass.
+    max_seconds : float or None
+        Of one pass; None: no limit. With a limit two runs may end at different faces.
     robust : {"geman-mcclure", "huber"} or None
         Kernel of the landmark errors, as wide as their median asks: between the passes a point that lies far
         off beside the others loses weight. None is least squares.
@@ -61,7 +64,7 @@ class FitOptions:
         5 m away. Landmarks tell it badly, so give it where it is known.
     principal_point : (x, y) px or None
         Of the perspective camera; None: the middle of the picture, or of the face when there is no picture.
-    scheme : {"ibug68", "ibug51", "ibug49"}, (k,) int array, or a pair (faces (k,), weights (k, 3))
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}, (k,) int array, or a pair (faces (k,), weights (k, 3))
         What the landmarks are: a known scheme, vertices of the model, or points in its triangles. With a table
         all points count alike, none slides along the jaw, and the 68 vertices of the result are the model's own.
     adjust : {"expression", "identity+expression"} or None
@@ -87,8 +90,9 @@ class FitOptions:
     jaw_tangent: float = 0.35
     max_deviation: float = 3.0
     max_passes: int = 4
-    tolerance: float = 1e-7
+    tolerance: float = 1e-6
     max_evaluations: int = 2000
+    max_seconds: float | None = None
     robust: str | None = "geman-mcclure"
     camera: str = "orthographic"
     focal_px: float | None = None
@@ -99,13 +103,11 @@ class FitOptions:
 
     def __post_init__(self) -> None:
         for name in _NUMBERS:
-            value = getattr(self, name)
-            counted = name in ("max_passes", "max_evaluations")
-            if counted and not (isinstance(value, int) and value >= 1):
-                raise ValueError(f"{name}: expected an integer >= 1, got {value!r}")
-            if not (np.isfinite(value) and (value >= 0 if name in _MAY_BE_ZERO else value > 0)):
-                wanted = "a finite number >= 0" if name in _MAY_BE_ZERO else "a finite number > 0"
-                raise ValueError(f"{name}: expected {wanted}, got {value!r}")
+            check_positive(name, getattr(self, name), zero=name in _MAY_BE_ZERO)
+        for name in _COUNTS:
+            check_positive(name, getattr(self, name), whole=True)
+        if self.max_seconds is not None:
+            check_positive("max_seconds", self.max_seconds)
         _known("robust", self.robust, (None, *KERNELS))
         _known("adjust", self.adjust, (None, *ADJUSTMENTS))
         _known("camera", self.camera, CAMERAS)
@@ -115,7 +117,8 @@ class FitOptions:
             _known("scheme", self.scheme, tuple(SCHEMES))
         if self.adjust is not None and not named:
             raise ValueError("adjust: expected a scheme by name to go with it, got a table")
-        _known("refine", self.refine, (True, False))
+        if not isinstance(self.refine, bool):
+            raise ValueError(f"refine: expected one of True, False, got {self.refine!r}")
         if self.jaw_tangent > 1:
             raise ValueError(f"jaw_tangent: expected a number in [0, 1], got {self.jaw_tangent!r}")
 
@@ -123,11 +126,16 @@ class FitOptions:
         for name in ("focal_px", "principal_point"):
             if getattr(self, name) is not None and self.camera != "perspective":
                 raise ValueError(f"{name}: expected camera='perspective' to go with it, got {self.camera!r}")
-        if self.focal_px is not None and not (np.isfinite(self.focal_px) and self.focal_px > 0):
-            raise ValueError(f"focal_px: expected a finite number > 0 or None, got {self.focal_px!r}")
+        if self.focal_px is not None:
+            check_positive("focal_px", self.focal_px)
         point = self.principal_point
-        if point is not None and (np.shape(point) != (2,) or not np.isfinite(point).all()):
+        if point is not None and not (_are_two_numbers(point) and np.isfinite(point).all()):
             raise ValueError(f"principal_point: expected 2 finite numbers (x, y) in px or None, got {point!r}")
+
+
+def _are_two_numbers(point: object) -> bool:
+    array = np.asarray(point)
+    return array.shape == (2,) and array.dtype.kind in "fiu"
 
 
 def _known(name: str, value: object, known: tuple[object, ...]) -> None:

@@ -181,6 +181,7 @@ class LandmarkFit:
                 algorithm=algorithm,
                 tolerance=self.options.tolerance,
                 max_evaluations=self.options.max_evaluations,
+                max_seconds=self.options.max_seconds,
             )
             x = decoupled.x(minimum.x)
             passes, evaluations = passes + 1, evaluations + minimum.evaluations

@@ -51,6 +51,7 @@ def nlopt_minimize(
     algorithm: str = "LD_LBFGS",
     tolerance: float = 1e-8,
     max_evaluations: int = 1000,
+    max_seconds: float | None = None,
 ) -> Minimum:
     """Minimum of a smooth function within bounds.
 
@@ -69,6 +70,7 @@ def nlopt_minimize(
     tolerance : float
         Relative change of the value at which to stop.
     max_evaluations : int
+    max_seconds : float, optional
 
     Raises
     ------
@@ -90,6 +92,7 @@ def nlopt_minimize(
     optimizer.set_min_objective(recorder)
     optimizer.set_ftol_rel(tolerance)
     optimizer.set_maxeval(max_evaluations)
+    optimizer.set_maxtime(max_seconds or 0.0)  # 0 is no limit
     nlopt.srand(0)  # for the stochastic ones; the same call gives the same answer
     try:
         optimizer.optimize(np.clip(start / scale, lower / scale, upper / scale))

@@ -45,6 +45,7 @@ def solve_together(problems: Sequence[LandmarkFit], algorithm: str) -> list[Solu
             algorithm=algorithm,
             tolerance=options.tolerance,
             max_evaluations=options.max_evaluations,
+            max_seconds=options.max_seconds,
         )
         parts = [loss.part(minimum.x, k) for k in range(len(problems))]
         passes, evaluations = passes + 1, evaluations + minimum.evaluations
