@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from toongeo.model.face_prior import FacePrior
 from toongeo.model.ibug68 import INNER, OUTER_EYES, PARTS
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.model.opposites import opposite_expressions
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
 from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
 from toongeo.pipeline.fit.decoupled_pose import decoupled_pose
@@ -27,6 +28,7 @@ from toongeo.pipeline.fit.robust_weights import SETTLED, robust_weights
 from toongeo.pipeline.fit.solution import Placement, Solution
 from toongeo.pipeline.fit.total_loss import TotalLoss
 from toongeo.pipeline.fit.unknowns import Unknowns
+from toongeo.pipeline.fit.without_opposites import without_opposites
 from toongeo.protocols import Coefficients
 
 __all__ = ["LandmarkFit"]
@@ -71,6 +73,8 @@ class LandmarkFit:
     principal_point : (2,) float, px
         Counts in perspective only.
     neighbours : (k, k) bool
+    opposites : (p, 2) int
+        Unknowns of which at most one is above zero.
     start : (n,) float
     trust : (k,) float
         Robust weights with which the first pass begins.
@@ -90,6 +94,7 @@ class LandmarkFit:
     count: int
     principal_point: Floats
     neighbours: NDArray[np.bool_]
+    opposites: NDArray[np.int64]
     start: Floats
     trust: Floats
 
@@ -155,6 +160,7 @@ class LandmarkFit:
             count=len(pixels),
             principal_point=principal_point,
             neighbours=_neighbours(seen, table),
+            opposites=unknowns.n_identity + opposite_expressions(model)[: None if options.refine else 0],
             start=start,
             trust=trust[seen],
         )
@@ -176,7 +182,7 @@ class LandmarkFit:
             minimum = nlopt_minimize(
                 decoupled,
                 x,
-                bounds=self.bounds,
+                bounds=(self.bounds[0], placement.upper),
                 scale=1 / np.sqrt(decoupled.curvature),
                 algorithm=algorithm,
                 tolerance=self.options.tolerance,
@@ -188,11 +194,11 @@ class LandmarkFit:
             before, placement = placement, self.renewed(placement, x, first=passes == 1)
             if self.settled(before, placement):
                 break
-        return self.solution(x, before, minimum.status, passes, evaluations)
+        return self.solution(np.minimum(x, placement.upper), before, minimum.status, passes, evaluations)
 
     def placement(self, x: Floats) -> Placement:
         """What the first pass holds fixed."""
-        return Placement(self._visible(x), self.trust, self.options.prior_weight)
+        return Placement(self._visible(x), self.trust, self.options.prior_weight, self.bounds[1])
 
     def renewed(self, placement: Placement, x: Floats, *, first: bool) -> Placement:
         """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
@@ -204,13 +210,15 @@ class LandmarkFit:
             misfit = float((trust * np.einsum("ki,kij,kj->k", errors, self.weights, errors)).sum()) / self.count
             expected = 2 * self.options.landmark_deviation**2
             prior_weight *= 1 + _GROWTH * max(0.0, misfit / expected - 1)
-        return Placement(self._visible(x), trust, prior_weight)
+        upper = without_opposites(placement.upper, x, self.opposites)
+        return Placement(self._visible(x), trust, prior_weight, upper)
 
     def settled(self, before: Placement, after: Placement) -> bool:
         """Whether another pass would find the same."""
         stayed = self.own is not None or np.array_equal(before.vertices, after.vertices)
         believed = np.abs(after.trust - before.trust).max() <= SETTLED
-        return bool(stayed and believed and before.prior_weight == after.prior_weight)
+        same = before.prior_weight == after.prior_weight and np.array_equal(before.upper, after.upper)
+        return bool(stayed and believed and same)
 
     def solution(self, x: Floats, placement: Placement, status: str, passes: int, evaluations: int) -> Solution:
         """The face at ``x``, where a pass with this placement ended."""

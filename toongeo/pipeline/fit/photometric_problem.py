@@ -103,7 +103,7 @@ class PhotometricProblem:
         face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))
         plane = picture_plane(img, mask, landmarks.frame, face, step=options.resolution, blur=options.blur)
         weight = fit.report.prior_weight
-        placement = Placement(fit.landmark_vertices, landmarks.trust, weight)
+        placement = Placement(fit.landmark_vertices, landmarks.trust, weight, landmarks.bounds[1])
         trust = landmarks.renewed(placement, start, first=False).trust
         problem = cls(fit.model, landmarks, samples, plane, start, weight, trust, options)
         frozen = problem.frozen(problem.z0)

@@ -33,8 +33,9 @@ class Solution:
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """What a pass holds fixed: landmark vertices (68,), robust weights (k,), and ``w_r``."""
+    """What a pass holds fixed: landmark vertices (68,), robust weights (k,), ``w_r``, and the upper bounds (n,)."""
 
     vertices: NDArray[np.int64]
     trust: Floats
     prior_weight: float
+    upper: Floats

@@ -39,7 +39,7 @@ def solve_together(problems: Sequence[LandmarkFit], algorithm: str) -> list[Solu
             x,
             bounds=(
                 loss.joined([problem.bounds[0] for problem in problems]),
-                loss.joined([problem.bounds[1] for problem in problems]),
+                loss.joined([placed.upper for placed in placements]),
             ),
             scale=1 / np.sqrt(loss.curvature(x)),
             algorithm=algorithm,
@@ -57,6 +57,6 @@ def solve_together(problems: Sequence[LandmarkFit], algorithm: str) -> list[Solu
         if all(p.settled(*pair) for p, *pair in zip(problems, before, placements, strict=True)):
             break
     return [
-        problem.solution(part, placed, minimum.status, passes, evaluations)
-        for problem, part, placed in zip(problems, parts, before, strict=True)
+        problem.solution(np.minimum(part, after.upper), placed, minimum.status, passes, evaluations)
+        for problem, part, placed, after in zip(problems, parts, before, placements, strict=True)
     ]
