@@ -17,6 +17,7 @@ __all__ = ["FitOptions", "changed_options"]
 
 
 _MAY_BE_ZERO = ("jaw_weight", "jaw_tangent")
+CONTOURS = ("lines", "silhouette")
 CAMERAS = ("orthographic", "perspective")
 _COUNTS = ("max_passes", "max_evaluations")
 _NUMBERS = (
@@ -45,6 +46,8 @@ class FitOptions:
         is.
     jaw_tangent : float in [0, 1]
         How much an error along the jaw's outline counts against one across it.
+    contour : {"lines", "silhouette"}
+        Where a jaw point lies: on its contour line, where that turns out of sight, or where the silhouette is nearest.
     max_deviation : float
         Bound of identity and unnamed expression coefficients, in standard deviations from the likeliest ones.
     max_passes : int
@@ -88,6 +91,7 @@ class FitOptions:
     expression_weight: float = 4.0
     jaw_weight: float = 0.015
     jaw_tangent: float = 0.35
+    contour: str = "lines"
     max_deviation: float = 3.0
     max_passes: int = 4
     tolerance: float = 1e-6
@@ -111,6 +115,7 @@ class FitOptions:
         _known("robust", self.robust, (None, *KERNELS))
         _known("adjust", self.adjust, (None, *ADJUSTMENTS))
         _known("camera", self.camera, CAMERAS)
+        _known("contour", self.contour, CONTOURS)
         self._check_lens()
         named = isinstance(self.scheme, str)
         if named:

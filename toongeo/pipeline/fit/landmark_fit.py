@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.face_prior import FacePrior
-from toongeo.model.ibug68 import INNER, OUTER_EYES, PARTS
+from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.opposites import opposite_expressions
 from toongeo.pipeline.fit.canonical_frame import CanonicalFrame, canonical_frame
-from toongeo.pipeline.fit.contour import jaw_weights, visible_landmarks
+from toongeo.pipeline.fit.contour import visible_landmarks
 from toongeo.pipeline.fit.decoupled_pose import decoupled_pose
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.fit_start import held_bounds, likeliest, posing_trust, principal_point_of, start_vector
@@ -20,11 +19,13 @@ from toongeo.pipeline.fit.inner_error import inner_error
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
 from toongeo.pipeline.fit.landmark_table import LandmarkTable
+from toongeo.pipeline.fit.landmark_weights import evened_weights, landmark_weights
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.nod_loss import NodLoss
 from toongeo.pipeline.fit.outlier_errors import NEIGHBOURS, outlier_errors
 from toongeo.pipeline.fit.prior_loss import PriorLoss
 from toongeo.pipeline.fit.robust_weights import SETTLED, robust_weights
+from toongeo.pipeline.fit.silhouette import silhouette_landmarks
 from toongeo.pipeline.fit.solution import Placement, Solution
 from toongeo.pipeline.fit.total_loss import TotalLoss
 from toongeo.pipeline.fit.unknowns import Unknowns
@@ -37,7 +38,6 @@ Floats = NDArray[np.float64]
 
 _FEWEST = 6  # points from which the affine camera of the first pose is overdetermined
 # Box of the pose: a quarter turn from the first one, in each direction four times as large, 200 mm away.
-_CLICK_MM = 1.0  # standard deviation of a click, on the head
 _GROWTH = 4.0  # a loose first pass bends the face to most of what is odd: the misfit it leaves is a small part
 _ROUGH = 2.0  # times the expected misfit: what a single landmark may miss by without being odd at all
 _DISTRUST = 0.1  # a point with less robust weight is called an outlier
@@ -52,6 +52,9 @@ class LandmarkFit:
 
     Attributes
     ----------
+    model : MorphableModel
+    pixels : (68, 2) or (k, 2) float, px
+        As they came, NaN rows missing.
     unknowns : Unknowns
     basis : LandmarkBasis
     frame : CanonicalFrame
@@ -80,6 +83,8 @@ class LandmarkFit:
         Robust weights with which the first pass begins.
     """
 
+    model: MorphableModel
+    pixels: Floats
     unknowns: Unknowns
     basis: LandmarkBasis
     frame: CanonicalFrame
@@ -120,7 +125,8 @@ class LandmarkFit:
         inner = np.intersect1d(seen, INNER)
         posing = inner if table is None and len(inner) >= _FEWEST else seen
         own = None if table is None else table.rows(model)
-        known = model.prior if table is None else None
+        # The offsets of jaw points start on the contour lines; a point of the silhouette is where it is seen.
+        known = model.prior if table is None and options.contour == "lines" else None
         offsets = np.zeros((68, 3)) if known is None else known.landmark_offsets
         expected = likeliest(model, unknowns)
         start = start_vector(guess, unknowns, expected)
@@ -145,13 +151,19 @@ class LandmarkFit:
         trust[posing] = trusted
         points = np.full(pixels.shape, np.nan)
         points[seen] = frame.from_pixels(pixels[seen])
+        if table is None:
+            weights = landmark_weights(points, model, frame.rotation0, options)
+        else:
+            weights = np.tile(np.eye(2), (len(pixels), 1, 1))
         return cls(
+            model=model,
+            pixels=pixels,
             unknowns=unknowns,
             basis=basis,
             frame=frame,
             seen=seen,
             points=points[seen],
-            weights=_weights(points, known, frame.rotation0, options, table)[seen] / basis.outer_eye_mm**2,
+            weights=weights[seen] / basis.outer_eye_mm**2,
             offsets=offsets,
             prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight, expected),
             bounds=bounds if options.refine else held_bounds(bounds, start, unknowns, guess.pose is not None),
@@ -198,7 +210,7 @@ class LandmarkFit:
 
     def placement(self, x: Floats) -> Placement:
         """What the first pass holds fixed."""
-        return Placement(self._visible(x), self.trust, self.options.prior_weight, self.bounds[1])
+        return Placement(self.visible(x), self.trust, self.options.prior_weight, self.bounds[1])
 
     def renewed(self, placement: Placement, x: Floats, *, first: bool) -> Placement:
         """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
@@ -211,7 +223,7 @@ class LandmarkFit:
             expected = 2 * self.options.landmark_deviation**2
             prior_weight *= 1 + _GROWTH * max(0.0, misfit / expected - 1)
         upper = without_opposites(placement.upper, x, self.opposites)
-        return Placement(self._visible(x), trust, prior_weight, upper)
+        return Placement(self.visible(x), trust, prior_weight, upper)
 
     def settled(self, before: Placement, after: Placement) -> bool:
         """Whether another pass would find the same."""
@@ -226,7 +238,7 @@ class LandmarkFit:
         return Solution(
             coefficients=x[self.unknowns.shape],
             camera=self.frame.camera(x, self.unknowns, self.principal_point),
-            landmark_vertices=self._visible(x),
+            landmark_vertices=self.visible(x),
             landmark_loss=loss.landmark(x)[0],
             prior_loss=loss.prior_value(x),
             prior_weight=loss.prior_weight,
@@ -253,7 +265,7 @@ class LandmarkFit:
         mean, modes = self.basis.at(landmark_vertices[self.seen]) if self.own is None else self.own
         if self.own is None:
             mean = mean + self.offsets[self.seen]
-        weights = self._evened(prior_weight)
+        weights = evened_weights(self.weights, prior_weight / self.options.prior_weight - 1, self.basis.outer_eye_mm)
         landmark = LandmarkLoss(
             unknowns=self.unknowns,
             points=self.points,
@@ -267,17 +279,6 @@ class LandmarkFit:
         nod = NodLoss(self.unknowns, self.frame.rotation0, self.options.nod_deviation)
         return TotalLoss(landmark, self.prior, nod, self.options.landmark_weight, prior_weight)
 
-    def _evened(self, prior_weight: float) -> Floats:
-        """Weights (k, 2, 2) under a raised ``w_r``: a misfit that all points share makes their own noise count less.
-
-        With the covariance ``W^-1`` of a point and the shared variance s these are ``(W^-1 + s I)^-1``, in units of
-        ``1 / (1 + s)``.
-        """
-        shared = prior_weight / self.options.prior_weight - 1
-        W = self.weights * self.basis.outer_eye_mm**2
-        evened = (1 + shared) * W @ np.linalg.inv(np.eye(2) + shared * W)
-        return evened / self.basis.outer_eye_mm**2
-
     def _trusted(self, residuals: Floats) -> Floats:
         """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
         W = self.weights  # its larger eigenvalue is the weight across an outline, or in all directions
@@ -289,8 +290,14 @@ class LandmarkFit:
         squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
         return robust_weights(squares, self.options.robust, (_ROUGH * self.options.landmark_deviation) ** 2)
 
-    def _visible(self, x: Floats) -> NDArray[np.int64]:
-        return visible_landmarks(self.basis, x[self.unknowns.shape], self.frame.rotation(x, self.unknowns))
+    def visible(self, x: Floats) -> NDArray[np.int64]:
+        """The 68 landmark vertices of the face at ``x``: jaw points on their lines, or on the silhouette."""
+        coefficients = x[self.unknowns.shape]
+        landmarks = visible_landmarks(self.basis, coefficients, self.frame.rotation(x, self.unknowns))
+        if self.options.contour == "lines" or self.own is not None:
+            return landmarks
+        camera = self.frame.camera(x, self.unknowns, self.principal_point)
+        return silhouette_landmarks(self.model, coefficients, camera, self.pixels, landmarks)
 
 
 def _row_blocks(modes: Floats, points: NDArray[np.int64]) -> Floats:
@@ -301,24 +308,6 @@ def _row_blocks(modes: Floats, points: NDArray[np.int64]) -> Floats:
 def _neighbours(seen: NDArray[np.int64], table: LandmarkTable | None) -> NDArray[np.bool_]:
     """Which of the points that are there follow each other; a table does not tell."""
     return NEIGHBOURS[np.ix_(seen, seen)] if table is None else np.zeros((len(seen), len(seen)), bool)
-
-
-def _weights(
-    points: Floats, known: FacePrior | None, rotation: Floats, options: FitOptions, table: LandmarkTable | None
-) -> Floats:
-    """Weights (k, 2, 2) of Eq. 4: the precision of each point as this pose shows it, relative to an inner point.
-
-    The covariance of a point in the picture is that of its place on the head, projected, and that of a click.
-    """
-    weights = np.tile(np.eye(2), (len(points), 1, 1))
-    if table is not None:
-        return weights
-    if known is not None:
-        spread = rotation[:2] @ known.landmark_covariance @ rotation[:2].T + _CLICK_MM**2 * np.eye(2)
-        precision = np.linalg.inv(spread)
-        weights = precision / (np.trace(precision[INNER], axis1=1, axis2=2).mean() / 2)
-    weights[PARTS["jaw"]] = options.jaw_weight * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
-    return weights
 
 
 def _bounds(model: MorphableModel, unknowns: Unknowns, expected: Floats, deviation: float) -> tuple[Floats, Floats]:

@@ -1,0 +1,72 @@
+"""How much each landmark counts, and in which direction."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.geometry import vertex_normals
+from toongeo.model.ibug68 import INNER, PARTS
+from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.contour import jaw_weights
+from toongeo.pipeline.fit.fit_options import FitOptions
+
+__all__ = ["evened_weights", "landmark_weights"]
+
+Floats = NDArray[np.float64]
+
+_CLICK_MM = 1.0  # standard deviation of a click, on the head
+# An inner point is guessed, not seen, where the surface of the mean face turns away from the viewer: its weight falls
+# while the cosine goes from the first number to the second, down to the third.
+_TURNING, _TURNED, _GUESSED = 0.1, -0.3, 0.1
+
+
+def landmark_weights(points: Floats, model: MorphableModel, rotation: Floats, options: FitOptions) -> Floats:
+    """Weights (68, 2, 2) of Eq. 4: the precision of each point as a pose shows it, relative to an inner point.
+
+    The covariance of a point in the picture is that of its place on the head, projected, and that of a click. Points
+    that are turned away weigh less, and jaw points as the options say.
+
+    Parameters
+    ----------
+    points : (68, 2) float
+        In any frame similar to the picture, y up; NaN rows are missing.
+    model : MorphableModel
+    rotation : (3, 3) float
+        From the model to the frame of the points.
+    options : FitOptions
+    """
+    weights = np.tile(np.eye(2), (68, 1, 1))
+    if model.prior is not None:
+        spread = rotation[:2] @ model.prior.landmark_covariance @ rotation[:2].T + _CLICK_MM**2 * np.eye(2)
+        precision = np.linalg.inv(spread)
+        weights = precision / (np.trace(precision[INNER], axis1=1, axis2=2).mean() / 2)
+    towards = _landmark_normals(model) @ rotation[2]
+    seen = np.clip((towards - _TURNED) / (_TURNING - _TURNED), _GUESSED, 1.0)
+    weights *= seen[:, None, None]
+    weights[PARTS["jaw"]] = options.jaw_weight * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
+    return weights
+
+
+def evened_weights(weights: Floats, shared: float, unit: float) -> Floats:
+    """Weights (k, 2, 2) when a misfit that all points share makes their own noise count less.
+
+    With the covariance ``W^-1`` of a point and the shared variance s these are ``(W^-1 + s I)^-1``, in units of
+    ``1 / (1 + s)``.
+
+    Parameters
+    ----------
+    weights : (k, 2, 2) float, 1/unit^2
+    shared : float >= 0
+        s.
+    unit : float
+    """
+    W = weights * unit**2
+    return (1 + shared) / unit**2 * W @ np.linalg.inv(np.eye(2) + shared * W)
+
+
+@lru_cache(maxsize=4)
+def _landmark_normals(model: MorphableModel) -> Floats:
+    return vertex_normals(model.mean, model.faces)[model.landmarks]
