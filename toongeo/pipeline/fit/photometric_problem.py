@@ -15,7 +15,7 @@ from toongeo.pipeline.fit.contour import visible_landmarks
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
-from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty, shading_basis
+from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
@@ -210,7 +210,7 @@ class PhotometricProblem:
             samples=samples.subset(rows),
             plane=self.plane,
             rotation0=frame.rotation0,
-            basis=shading_basis(normals[rows] @ frame.roll.T),
+            roll=frame.roll,
             slopes=_srgb_slope(self.plane.sample(at[rows])[0]),
             weights=weights[rows],
         )
