@@ -124,7 +124,7 @@ class PhotometricProblem:
     def solve(self) -> PhotometricSolution:
         """Freeze, minimise, and again, as often as the options say."""
         z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
-        frozen = self.frozen(z)
+        first = frozen = self.frozen(z)
         penalty = self.loss(z, frozen).penalty
         ambient = self._rms(frozen, *self._lit(frozen, z, _AMBIENT_ONLY * penalty))
         before = self._rms(frozen, *self._lit(frozen, z, penalty))
@@ -144,14 +144,18 @@ class PhotometricProblem:
             z, evaluations = minimum.x, evaluations + minimum.evaluations
             frozen = self.frozen(z)
         x, _ = loss.full(z)
+        after = self._rms(frozen, x, frozen.observe(x))
+        if after > before:  # nothing was explained: keep the face of the landmarks, in its best light
+            z, frozen, loss, after = self.z0, first, self.loss(self.z0, first), before
+            x, _ = self._lit(first, z, penalty)
         return PhotometricSolution(
             z=z,
             light=x[loss.photometric.light].reshape(9, 3),
             landmark_vertices=self._placed(z),
             landmark_loss=loss.geometry.landmark(z[:n])[0],
             prior_loss=loss.geometry.prior(z[:n])[0],
-            loss=minimum.value,
-            residuals=(ambient, before, self._rms(frozen, x, frozen.observe(x))),
+            loss=loss(z)[0],
+            residuals=(ambient, before, after),
             confident_fraction=float(frozen.weights.sum()),
             status=minimum.status,
             passes=self.options.passes,
