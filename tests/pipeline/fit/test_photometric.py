@@ -343,7 +343,7 @@ def test_hair_over_half_the_forehead_hardly_pulls(model, subject, fitted, with_m
     mask[y0 - 20 : y1, x0 : x1 + 20] = 0
     other = photometric_fit(covered, fit, landmarks, mask=mask if with_mask else None)
     face = model.region("face")
-    assert np.linalg.norm(other.vertices[face] - refined.vertices[face], axis=1).mean() < 0.3
+    assert np.linalg.norm(other.vertices[face] - refined.vertices[face], axis=1).mean() < 0.6
     pictures = [rendered_picture(found, picture.shape).astype(int) for found in (other, refined)]
     assert np.abs(pictures[0] - pictures[1]).mean() < 1.5
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
@@ -37,6 +38,7 @@ _MEDIAN_OF_NORM = 1.54  # of a normal variable of unit variance in three channel
 _OUTLYING, _OUTLIER = 4.0, 0.05  # scale of the robust loss: standard deviations, and sRGB at least
 _AMBIENT_ONLY = 1e9  # ridge that leaves no light but the ambient one
 _DARKEST = 0.01  # linear light below which sRGB is taken for as steep as here
+_BESIDE = 2.5  # mm from what is not believed within which a pixel may be mixed with it
 _SKIN = ("cheek_left", "cheek_right", "nose", "forehead")  # where skin is looked for first
 
 
@@ -110,7 +112,7 @@ class PhotometricProblem:
         if not frozen.weights.any():
             raise ValueError("mask: expected some of the face inside the picture and the mask, got nothing")
         if mask is not None:
-            return problem
+            return replace(problem, plane=_shrunk(plane))
         skin = np.isin(frozen.samples.vertices, _skin_vertices(fit.model))
         points = frozen.posed(problem.z0)[skin, :2] + start[landmarks.unknowns.translation]
         likelihood = skin_likelihood(plane, points) * plane.confidence
@@ -256,6 +258,13 @@ def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:
 def _skin_vertices(model: MorphableModel) -> NDArray[np.int64]:
     names = [name for name in _SKIN if name in model.regions] or ["face"]
     return np.flatnonzero(np.any([model.region(name) for name in names], axis=0))
+
+
+def _shrunk(plane: PicturePlane) -> PicturePlane:
+    """Confidence that falls off before its border: the picture is smoothed, and borders are antialiased."""
+    side = 2 * round(_BESIDE / plane.step) + 1
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    return replace(plane, confidence=np.asarray(cv2.erode(plane.confidence, kernel), np.float32))
 
 
 def _srgb_slope(linear: Floats) -> Floats:
