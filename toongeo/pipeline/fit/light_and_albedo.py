@@ -9,17 +9,10 @@ from numpy.typing import NDArray
 
 from toongeo.pipeline.fit.photometric_loss import N_LIGHT, Observation, PhotometricLoss
 from toongeo.pipeline.fit.total_loss import TotalLoss
-from toongeo.render.spherical_harmonics import irradiance
 
-__all__ = ["ReducedLoss", "best_light", "light_penalty", "shading_basis"]
+__all__ = ["ReducedLoss", "best_light", "light_penalty"]
 
 Floats = NDArray[np.float64]
-
-
-def shading_basis(normals: Floats) -> Floats:
-    """Shade (k, 9) of white surfaces with these normals (k, 3) under each harmonic of unit radiance."""
-    units = np.eye(9).reshape(9, 3, 3)
-    return np.concatenate([irradiance(normals, units[:, k]) for k in range(3)], axis=1) / np.pi
 
 
 def light_penalty(loss: PhotometricLoss, observed: Observation, weight: float) -> Floats:
@@ -28,7 +21,7 @@ def light_penalty(loss: PhotometricLoss, observed: Observation, weight: float) -
     The visible half of a face hardly tells some harmonics apart. The ridge is the same in all frames, because within
     a degree it is the same for all.
     """
-    strength = loss.weights[:, None] * (loss.slopes * observed.reflectance * loss.basis[:, :1]) ** 2
+    strength = loss.weights[:, None] * (loss.slopes * observed.reflectance * observed.basis[:, :1]) ** 2
     penalty = np.full(9, weight * float(strength.sum()) / 3)
     penalty[0] = 0.0
     return penalty
@@ -40,7 +33,7 @@ def best_light(loss: PhotometricLoss, observed: Observation, penalty: Floats) ->
     rendered, wanted = factor * observed.reflectance, factor * observed.seen
     light = np.empty((9, 3))
     for channel in range(3):
-        B = loss.basis * rendered[:, channel, None]
+        B = observed.basis * rendered[:, channel, None]
         normal = B.T @ B
         # The floor keeps a matrix regular that few samples do not determine.
         normal[np.diag_indices(9)] += penalty + 1e-12 + 1e-9 * np.trace(normal)

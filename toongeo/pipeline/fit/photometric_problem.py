@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
@@ -11,11 +12,10 @@ from scipy.spatial.transform import Rotation
 from toongeo.geometry.vertex_normals import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.confidence import skin_likelihood
-from toongeo.pipeline.fit.contour import visible_landmarks
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
-from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty, shading_basis
+from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
@@ -23,6 +23,7 @@ from toongeo.pipeline.fit.photometric_samples import PhotometricSamples, photome
 from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
 from toongeo.pipeline.fit.solution import Placement
 from toongeo.pipeline.fit.visible_samples import visible_samples
+from toongeo.pipeline.fit.without_opposites import without_opposites
 from toongeo.render.srgb import linear_to_srgb
 
 __all__ = ["PhotometricProblem", "PhotometricSolution"]
@@ -37,6 +38,7 @@ _MEDIAN_OF_NORM = 1.54  # of a normal variable of unit variance in three channel
 _OUTLYING, _OUTLIER = 4.0, 0.05  # scale of the robust loss: standard deviations, and sRGB at least
 _AMBIENT_ONLY = 1e9  # ridge that leaves no light but the ambient one
 _DARKEST = 0.01  # linear light below which sRGB is taken for as steep as here
+_BESIDE = 2.5  # mm from what is not believed within which a pixel may be mixed with it
 _SKIN = ("cheek_left", "cheek_right", "nose", "forehead")  # where skin is looked for first
 
 
@@ -110,7 +112,7 @@ class PhotometricProblem:
         if not frozen.weights.any():
             raise ValueError("mask: expected some of the face inside the picture and the mask, got nothing")
         if mask is not None:
-            return problem
+            return replace(problem, plane=_shrunk(plane))
         skin = np.isin(frozen.samples.vertices, _skin_vertices(fit.model))
         points = frozen.posed(problem.z0)[skin, :2] + start[landmarks.unknowns.translation]
         likelihood = skin_likelihood(plane, points) * plane.confidence
@@ -124,7 +126,7 @@ class PhotometricProblem:
     def solve(self) -> PhotometricSolution:
         """Freeze, minimise, and again, as often as the options say."""
         z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
-        frozen = self.frozen(z)
+        first = frozen = self.frozen(z)
         penalty = self.loss(z, frozen).penalty
         ambient = self._rms(frozen, *self._lit(frozen, z, _AMBIENT_ONLY * penalty))
         before = self._rms(frozen, *self._lit(frozen, z, penalty))
@@ -144,14 +146,18 @@ class PhotometricProblem:
             z, evaluations = minimum.x, evaluations + minimum.evaluations
             frozen = self.frozen(z)
         x, _ = loss.full(z)
+        after = self._rms(frozen, x, frozen.observe(x))
+        if after > before:  # nothing was explained: keep the face of the landmarks, in its best light
+            z, frozen, loss, after = self.z0, first, self.loss(self.z0, first), before
+            x, _ = self._lit(first, z, penalty)
         return PhotometricSolution(
             z=z,
             light=x[loss.photometric.light].reshape(9, 3),
             landmark_vertices=self._placed(z),
             landmark_loss=loss.geometry.landmark(z[:n])[0],
             prior_loss=loss.geometry.prior_value(z[:n]),
-            loss=minimum.value,
-            residuals=(ambient, before, self._rms(frozen, x, frozen.observe(x))),
+            loss=loss(z)[0],
+            residuals=(ambient, before, after),
             confident_fraction=float(frozen.weights.sum()),
             status=minimum.status,
             passes=self.options.passes,
@@ -210,7 +216,7 @@ class PhotometricProblem:
             samples=samples.subset(rows),
             plane=self.plane,
             rotation0=frame.rotation0,
-            basis=shading_basis(normals[rows] @ frame.roll.T),
+            roll=frame.roll,
             slopes=_srgb_slope(self.plane.sample(at[rows])[0]),
             weights=weights[rows],
         )
@@ -226,12 +232,13 @@ class PhotometricProblem:
         return float(np.sqrt(loss.weights @ error / loss.weights.sum()))
 
     def _placed(self, z: Floats) -> NDArray[np.int64]:
-        u = self.landmarks.unknowns
-        return visible_landmarks(self.landmarks.basis, z[u.shape], self.landmarks.frame.rotation(z[: u.size], u))
+        return self.landmarks.visible(z[: self.landmarks.unknowns.size])
 
     def _bounds(self) -> tuple[Floats, Floats]:
         albedo = np.full(self.samples.albedo.shape[1], _MAX_ALBEDO)
         lower, upper = self.landmarks.bounds
+        # Counted from -1: of a pair at rest neither is let go.
+        upper = without_opposites(upper, 1 + self.start, self.landmarks.opposites)
         return np.concatenate([lower, -albedo]), np.concatenate([upper, albedo])
 
 
@@ -252,6 +259,13 @@ def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:
 def _skin_vertices(model: MorphableModel) -> NDArray[np.int64]:
     names = [name for name in _SKIN if name in model.regions] or ["face"]
     return np.flatnonzero(np.any([model.region(name) for name in names], axis=0))
+
+
+def _shrunk(plane: PicturePlane) -> PicturePlane:
+    """Confidence that falls off before its border: the picture is smoothed, and borders are antialiased."""
+    side = 2 * round(_BESIDE / plane.step) + 1
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))
+    return replace(plane, confidence=np.asarray(cv2.erode(plane.confidence, kernel), np.float32))
 
 
 def _srgb_slope(linear: Floats) -> Floats:

@@ -24,9 +24,16 @@ class PhotometricSamples:
     vertices : (k,) int, ascending
     area : (k,) float, mm^2
         The part of the mean face that each stands for.
-    mean : (k, 3) float
-    modes : (3 k, c) float32 or float64
+    mean : (r, 3) float
+        The samples and all vertices that share a triangle with one of them.
+    modes : (3 r, c) float32 or float64
         Columns are identity, then expression. Millimetres; float32 halves the time and costs 1e-5 mm.
+    own : (k,) int
+        Row of each sample in ``mean``.
+    corners : (t, 3) int
+        Triangles around the samples, as rows of ``mean``; one that has two samples is there twice.
+    around : (t,) int
+        Around which sample each of them lies.
     albedo_mean : (k, 3) float, sRGB
     albedo : (3 k, a) float
     faces : (f, 3) int
@@ -37,6 +44,9 @@ class PhotometricSamples:
     area: Floats
     mean: Floats
     modes: NDArray[np.floating]
+    own: NDArray[np.int64]
+    corners: NDArray[np.int64]
+    around: NDArray[np.int64]
     albedo_mean: Floats
     albedo: Floats
     faces: NDArray[np.int64]
@@ -44,11 +54,17 @@ class PhotometricSamples:
     def subset(self, rows: NDArray[np.int64]) -> PhotometricSamples:
         """Only the samples ``rows`` (r,)."""
         coordinates = (3 * rows[:, None] + np.arange(3)).ravel()
+        row = np.full(len(self.vertices), -1)
+        row[rows] = np.arange(len(rows))
+        kept = row[self.around] >= 0
         return PhotometricSamples(
             vertices=self.vertices[rows],
             area=self.area[rows],
-            mean=self.mean[rows],
-            modes=self.modes.take(coordinates, axis=0),
+            mean=self.mean,
+            modes=self.modes,
+            own=self.own[rows],
+            corners=self.corners[kept],
+            around=row[self.around[kept]],
             albedo_mean=self.albedo_mean[rows],
             albedo=self.albedo[coordinates],
             faces=self.faces,
@@ -62,12 +78,17 @@ def photometric_samples(model: MorphableModel, count: int) -> PhotometricSamples
     faces = model.faces[face[model.faces].all(axis=1)]
     area = _vertex_area(model.mean, faces)
     vertices, share = _spread(model, np.flatnonzero(face & (area > 0)), area, count)
-    modes = np.concatenate([model.identity[:, vertices], model.expression[:, vertices]])
+    which, corner = np.nonzero(np.isin(model.faces, vertices))
+    ring = np.unique(model.faces[which])
+    modes = np.concatenate([model.identity[:, ring], model.expression[:, ring]])
     return PhotometricSamples(
         vertices=vertices,
         area=share,
-        mean=model.mean[vertices],
-        modes=np.ascontiguousarray(modes.transpose(1, 2, 0).reshape(3 * len(vertices), -1)),
+        mean=model.mean[ring],
+        modes=np.ascontiguousarray(modes.transpose(1, 2, 0).reshape(3 * len(ring), -1)),
+        own=np.searchsorted(ring, vertices),
+        corners=np.searchsorted(ring, model.faces[which]),
+        around=np.searchsorted(vertices, model.faces[which, corner]),
         albedo_mean=model.albedo_mean[vertices].astype(np.float64),
         albedo=model.albedo[:, vertices].transpose(1, 2, 0).reshape(3 * len(vertices), -1).astype(np.float64),
         faces=faces,
