@@ -1,0 +1,119 @@
+"""A head cut out of its picture, and the skin cut out of the head."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.pipeline.parse.cut_out import cut_out
+from toongeo.pipeline.parse.face_zones import FaceZones, Mask, grown
+from toongeo.pipeline.parse.skin_surface import colour_mode, skin_surface
+from toongeo.pipeline.parse.working_view import WorkingView
+
+__all__ = ["HeadAndSkin", "head_and_skin"]
+
+# Shares of the head's size.
+_HAIR = 0.12  # so far beyond the head its hair is likely
+_FAR = 0.5  # so far beyond head and neck there is only background
+_CORE = 0.03  # so far inside the jaw line it is face for sure
+_SKIN = 0.03  # so far beyond the fitted head its skin may go on
+_STROKE = 0.02  # breadth of the broadest outline
+_EDGE = 0.015  # over so much a soft border falls off
+
+_LIKE_SKIN = 2.5  # spreads of the skin's colour
+_DARK, _VALLEY = 40.0, 20.0  # lightness below which, and depth above which, a line is an outline
+_SOFTNESS = 1e-3  # of the guided filter, squared colour differences
+
+
+@dataclass(frozen=True, eq=False)
+class HeadAndSkin:
+    """Masks (h, w) bool of a working view, and how far to believe them, (h, w) in [0, 1].
+
+    Attributes
+    ----------
+    head : what belongs to the head: skin, hair, neck, what is worn
+    skin : skin, without outlines
+    alien : how unlike skin a colour is, (h, w) in [0, 1]
+    outline : dark strokes
+    confidence : low where the border of head or skin is doubtful
+    """
+
+    head: Mask
+    skin: Mask
+    alien: NDArray[np.float32]
+    outline: Mask
+    confidence: NDArray[np.float32]
+
+
+def head_and_skin(view: WorkingView, zones: FaceZones) -> HeadAndSkin:
+    """Two cuts: head from background, seeded by the fitted head; skin from the rest, by its own colour."""
+    lab = cv2.cvtColor(view.pixels.astype(np.float32) / 255, cv2.COLOR_RGB2LAB)
+    outline = _outline(lab[..., 0], _STROKE * view.head)
+    core = grown(zones.hull, -_CORE * view.head)
+    features = zones.eyes | zones.brow_left | zones.brow_right | zones.inner_mouth | zones.upper_lip | zones.lower_lip
+    alien = _alien(lab, core & ~features & ~outline, zones)
+    colours = cv2.cvtColor(view.pixels, cv2.COLOR_RGB2LAB)
+    body = zones.silhouette | zones.neck
+    head = cut_out(
+        colours,
+        sure=core,
+        likely=grown(zones.silhouette, _HAIR * view.head) & ~zones.below_chin | body,
+        never=~grown(body, _FAR * view.head),
+    )
+    near = grown(body, _SKIN * view.head)
+    skin = cut_out(
+        colours,
+        sure=core & ~features & (alien < 0.5) & ~outline,
+        likely=near & (alien < 0.8) & ~outline & ~features,
+        never=~near | outline | ~(head | core),
+    )
+    head = _one_piece(head | skin, core)
+    skin = skin & ~features | (features & (alien < 0.5) & ~outline)
+    confidence = np.minimum(_trust(view, head), _trust(view, skin))
+    return HeadAndSkin(head, skin, alien, outline, confidence)
+
+
+def _outline(lightness: NDArray[np.float32], breadth: float) -> Mask:
+    """Dark lines that are narrower than some breadth, px."""
+    size = 2 * max(1, round(breadth)) + 1
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
+    valley = cv2.morphologyEx(np.ascontiguousarray(lightness), cv2.MORPH_CLOSE, kernel) - lightness
+    return (valley > _VALLEY) & (lightness < _DARK)
+
+
+def _alien(lab: NDArray[np.float32], inside: Mask, zones: FaceZones) -> NDArray[np.float32]:
+    """How unlike skin each colour is; a quadratic surface follows its shading over the face."""
+    samples = lab[inside] if inside.sum() > 16 else lab.reshape(-1, 3)
+    seed = colour_mode(samples.astype(np.float64))
+    ys, xs = np.nonzero(zones.hull)
+    rows, columns = slice(ys.min(), ys.max() + 1), slice(xs.min(), xs.max() + 1)
+    surface = skin_surface(lab[rows, columns], seed, inside[rows, columns])
+    # Beyond the face its border colours go on: a quadratic would run away.
+    pads = ((rows.start, lab.shape[0] - rows.stop), (columns.start, lab.shape[1] - columns.stop), (0, 0))
+    expected = np.pad(surface.colour, pads, mode="edge")
+    off = ((lab - expected) ** 2).sum(axis=2) / (_LIKE_SKIN * surface.spread) ** 2
+    return (1 - np.exp(-0.5 * off)).astype(np.float32)
+
+
+def _one_piece(mask: Mask, core: Mask) -> Mask:
+    """The pieces of a mask that touch the core, without small holes."""
+    count, pieces = cv2.connectedComponents(mask.astype(np.uint8))
+    kept = np.zeros(count, bool)
+    kept[np.unique(pieces[core])] = True
+    kept[0] = False
+    whole = kept[pieces]
+    count, holes, stats, _ = cv2.connectedComponentsWithStats((~whole).astype(np.uint8), connectivity=4)
+    small = stats[:, cv2.CC_STAT_AREA] < 0.02 * max(int(core.sum()), 1)
+    small[0] = False
+    return whole | small[holes]
+
+
+def _trust(view: WorkingView, mask: Mask) -> NDArray[np.float32]:
+    """1 where an edge-aware filter leaves the mask as it is, 0 where it leaves a half."""
+    radius = max(2, round(2 * _EDGE * view.head))
+    guide = view.pixels.astype(np.float32) / 255
+    soft = cv2.ximgproc.guidedFilter(guide, mask.astype(np.float32), radius, _SOFTNESS)
+    return np.clip(np.abs(2 * soft - 1), 0, 1) * ((soft > 0.5) == mask)
