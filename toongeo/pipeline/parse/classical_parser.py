@@ -13,6 +13,7 @@ from toongeo.io.check_image import check_image
 from toongeo.io.landmark_array import landmark_array
 from toongeo.model.default_model import default_model
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.face_zones import FaceZones, Mask, face_zones, filled, grown
 from toongeo.pipeline.parse.find_lids import Lids, find_lids
 from toongeo.pipeline.parse.head_and_skin import HeadAndSkin, head_and_skin
@@ -22,6 +23,13 @@ from toongeo.protocols import FaceLabel, FaceParse, FittedFace
 __all__ = ["ClassicalParser"]
 
 Floats = NDArray[np.float64]
+
+_EARS = 0.06  # of the head's size: so far beyond the fitted ears there are ears
+_SHADED = 0.95  # how unlike skin the neck may be, which lies in the shadow of the chin
+_HAIR_SHARE = 0.01  # of the hair's pixels: so common is a colour of hair
+_STRANDS = 0.01  # of the head's size: thinner bridges between hair and clothes do not count
+_HANG = 0.3  # of the head's size: so far from the head there is hair below the chin
+_FINE = 4  # subpixels a side
 
 
 @dataclass(frozen=True)
@@ -90,18 +98,16 @@ def _completed(landmarks: Floats, fit: FittedFace) -> Floats:
 
 def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin) -> NDArray[np.uint8]:
     """Labels (h, w) of the working view; later ones cover earlier ones."""
-    shape = view.pixels.shape[:2]
-    labels = np.full(shape, FaceLabel.BACKGROUND, np.uint8)
-    near = grown(zones.silhouette, 0.03 * view.head)
+    labels = np.full(view.pixels.shape[:2], FaceLabel.BACKGROUND, np.uint8)
     strange = cut.head & ~cut.skin
-    labels[_hair(view, zones, cut, strange)] = FaceLabel.HAIR
-    labels[cut.skin] = FaceLabel.SKIN
     neck = zones.below_chin & ~zones.hull
-    labels[cut.skin & neck] = FaceLabel.NECK
-    labels[cut.skin & grown(zones.ears, 0.03 * view.head) & ~zones.hull & ~neck] = FaceLabel.EARS
-    labels[strange & near & ~zones.lower_face & zones.hull] = FaceLabel.OTHER
+    ears = grown(zones.ears, _EARS * view.head) & ~zones.hull & ~neck
+    labels[strange & zones.hull] = FaceLabel.OTHER
+    labels[_hair(view, zones, strange)] = FaceLabel.HAIR
+    labels[cut.skin] = FaceLabel.SKIN
+    labels[(cut.skin & neck) | (strange & neck & zones.neck & (cut.alien < _SHADED))] = FaceLabel.NECK
+    labels[cut.skin & ears] = FaceLabel.EARS
     labels[cut.skin & zones.nose] = FaceLabel.NOSE
-    inside = strange & zones.hull
     labels[cut.outline & cut.head] = FaceLabel.OTHER
     for brow, label in ((zones.brow_right, FaceLabel.BROW_RIGHT), (zones.brow_left, FaceLabel.BROW_LEFT)):
         labels[brow & (cut.alien > 0.5)] = label
@@ -111,16 +117,18 @@ def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin) -> NDArray[np
     return labels
 
 
-def _hair(view: WorkingView, zones: FaceZones, cut: HeadAndSkin, strange: Mask) -> Mask:
-    """What of the head is not skin; below the chin only what has a colour found above it, as clothes have not."""
-    above = strange & ~zones.below_chin
-    below = strange & zones.below_chin
-    if not below.any() or not above.any():
-        return above
-    lab = cv2.cvtColor(view.pixels, cv2.COLOR_RGB2LAB) // 16
-    code = lab[..., 0].astype(np.int64) * 256 + lab[..., 1].astype(np.int64) * 16 + lab[..., 2]
-    known = np.bincount(code[above & ~zones.hull], minlength=4096) > 0.01 * above.sum()
-    return above | (below & known[code])
+def _hair(view: WorkingView, zones: FaceZones, strange: Mask) -> Mask:
+    """What of the head is not skin; within the face and below the chin, only what has a colour of the hair above.
+
+    Below the chin it must also hang together with the hair above, and not hang too far, or it is taken for clothes.
+    """
+    crown = strange & ~zones.below_chin & ~zones.hull
+    alike = crown | (strange & (colour_share(colour_codes(view.pixels), crown) > _HAIR_SHARE))
+    firm = grown(alike, -_STRANDS * view.head)
+    _, pieces = cv2.connectedComponents(firm.astype(np.uint8))
+    hanging = firm & np.isin(pieces, np.unique(pieces[firm & crown]))
+    allowed = grown(hanging, 2 * _STRANDS * view.head) & grown(zones.silhouette, _HANG * view.head)
+    return alike & (~zones.below_chin | allowed)
 
 
 def _full_size(
@@ -143,7 +151,13 @@ def _full_size(
 
 
 def _paint_eye(labels: NDArray[np.uint8], confidence: NDArray[np.float32], lids: Lids, label: FaceLabel) -> None:
-    """Put an eye into labels and confidence, in place."""
-    eye = filled(labels.shape, lids.contour)
-    labels[eye] = label
-    confidence[eye] = lids.confidence
+    """Put an eye into labels and confidence, in place: the pixels that are half covered or more."""
+    height, width = labels.shape
+    x0, y0 = np.clip(np.floor(lids.contour.min(axis=0)).astype(int) - 1, 0, [width - 1, height - 1])
+    x1, y1 = np.clip(np.ceil(lids.contour.max(axis=0)).astype(int) + 2, [x0 + 1, y0 + 1], [width, height])
+    inner = (lids.contour - [x0, y0] + 0.5) * _FINE - 0.5
+    fine = filled(((y1 - y0) * _FINE, (x1 - x0) * _FINE), inner).astype(np.float32)
+    covered = cv2.resize(fine, (int(x1 - x0), int(y1 - y0)), interpolation=cv2.INTER_AREA)
+    eye = covered >= 0.5
+    labels[y0:y1, x0:x1][eye] = label
+    confidence[y0:y1, x0:x1][eye] = lids.confidence

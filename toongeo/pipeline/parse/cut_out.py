@@ -10,7 +10,7 @@ __all__ = ["cut_out"]
 
 Mask = NDArray[np.bool_]
 
-_PASSES = 3
+_PASSES = 2
 _FEWEST = 16  # px that either side needs for its five Gaussians
 
 

@@ -97,10 +97,10 @@ def filled(shape: tuple[int, int], polygon: Floats) -> Mask:
 
 def grown(mask: Mask, radius: float) -> Mask:
     """Pixels within a radius, px, of a mask; of a negative one, those that far from its outside."""
-    size = 2 * round(abs(radius)) + 1
-    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
-    change = cv2.dilate if radius > 0 else cv2.erode
-    return change(mask.astype(np.uint8), kernel).astype(bool)
+    if radius < 0:
+        return ~grown(~mask, -radius)
+    away = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)
+    return (away <= radius) if mask.any() else np.zeros_like(mask)
 
 
 def _seen_regions(view: WorkingView, fit: FittedFace) -> dict[str, Mask]:

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.cut_out import cut_out
 from toongeo.pipeline.parse.face_zones import FaceZones, Mask, grown
 from toongeo.pipeline.parse.skin_surface import colour_mode, skin_surface
@@ -19,10 +20,14 @@ __all__ = ["HeadAndSkin", "head_and_skin"]
 _HAIR = 0.12  # so far beyond the head its hair is likely
 _FAR = 0.5  # so far beyond head and neck there is only background
 _CORE = 0.03  # so far inside the jaw line it is face for sure
-_SKIN = 0.03  # so far beyond the fitted head its skin may go on
+_SKIN = 0.1  # so far beyond the fitted head its skin may go on
 _STROKE = 0.02  # breadth of the broadest outline
+_CLEAR = 0.05  # of the border of the fitted head may be wrong
+_RIM = 0.08  # breadth of the picture's border that is looked at
 _EDGE = 0.015  # over so much a soft border falls off
 
+_STEP = 2  # levels, 0-255, between neighbours of a smooth background
+_RARE = 0.003  # share of the pixels that a colour must have to be one of the head's
 _LIKE_SKIN = 2.5  # spreads of the skin's colour
 _DARK, _VALLEY = 40.0, 20.0  # lightness below which, and depth above which, a line is an outline
 _SOFTNESS = 1e-3  # of the guided filter, squared colour differences
@@ -57,23 +62,56 @@ def head_and_skin(view: WorkingView, zones: FaceZones) -> HeadAndSkin:
     alien = _alien(lab, core & ~features & ~outline, zones)
     colours = cv2.cvtColor(view.pixels, cv2.COLOR_RGB2LAB)
     body = zones.silhouette | zones.neck
+    behind = _behind(view, body)
     head = cut_out(
         colours,
         sure=core,
-        likely=grown(zones.silhouette, _HAIR * view.head) & ~zones.below_chin | body,
-        never=~grown(body, _FAR * view.head),
+        likely=_likely_head(view, zones, behind),
+        never=~grown(body, _FAR * view.head) | behind & ~core,
     )
     near = grown(body, _SKIN * view.head)
     skin = cut_out(
         colours,
         sure=core & ~features & (alien < 0.5) & ~outline,
-        likely=near & (alien < 0.8) & ~outline & ~features,
+        likely=near & (alien < 0.6) & ~outline & ~features,
         never=~near | outline | ~(head | core),
     )
     head = _one_piece(head | skin, core)
     skin = skin & ~features | (features & (alien < 0.5) & ~outline)
     confidence = np.minimum(_trust(view, head), _trust(view, skin))
     return HeadAndSkin(head, skin, alien, outline, confidence)
+
+
+def _behind(view: WorkingView, body: Mask) -> Mask:
+    """Background that is one smooth colour: it is reached from the picture's border over tiny steps only.
+
+    Only the upper, left and right border count, where they are clear of the fitted head: shoulders reach the lower one.
+    """
+    height, width = body.shape
+    reached = np.zeros((height + 2, width + 2), np.uint8)
+    away = grown(body, _CLEAR * view.head)
+    edge = [(x, 0) for x in range(width)] + [(x, y) for y in range(height) for x in (0, width - 1)]
+    smooth = cv2.bilateralFilter(view.pixels, 5, 12, 3)
+    flags = 4 | (1 << 8) | cv2.FLOODFILL_MASK_ONLY
+    for x, y in edge:
+        if not away[y, x] and not reached[y + 1, x + 1]:
+            cv2.floodFill(smooth, reached, (x, y), 0, (_STEP,) * 3, (_STEP,) * 3, flags)
+    return grown(reached[1:-1, 1:-1].astype(bool), -1) & ~grown(body, -_CLEAR * view.head)
+
+
+def _likely_head(view: WorkingView, zones: FaceZones, behind: Mask) -> Mask:
+    """The fitted head, and around it what has the colours of its surroundings rather than of the picture's border."""
+    body = zones.silhouette | zones.neck
+    ring = grown(zones.silhouette, _HAIR * view.head) & ~zones.below_chin & ~behind
+    height, width = body.shape
+    rim = max(2, round(_RIM * view.head))
+    border = np.ones_like(body)
+    border[rim:, rim : width - rim] = False
+    codes = colour_codes(view.pixels)
+    outside = colour_share(codes, (border | ~grown(body, _FAR * view.head)) & ~body)
+    inside = colour_share(codes, ring)
+    share = inside / np.maximum(inside + outside, 1e-9) * (inside > _RARE)
+    return (body & ~behind) | (ring & (share > 0.3)) | (grown(body, _FAR * view.head) & (share > 0.8) & ~zones.below_chin)
 
 
 def _outline(lightness: NDArray[np.float32], breadth: float) -> Mask:

@@ -12,7 +12,7 @@ __all__ = ["WorkingView", "working_view"]
 
 Floats = NDArray[np.float64]
 
-_MARGIN = 0.6  # of the head's size, on all sides: so far its hair is looked for
+_MARGIN = 0.5  # of the head's size, on all sides: so far its hair is looked for
 
 
 @dataclass(frozen=True, eq=False)
