@@ -25,7 +25,6 @@ __all__ = ["ClassicalParser"]
 Floats = NDArray[np.float64]
 
 _EARS = 0.06  # of the head's size: so far beyond the fitted ears there are ears
-_SHADED = 0.95  # how unlike skin the neck may be, which lies in the shadow of the chin
 _HAIR_SHARE = 0.01  # of the hair's pixels: so common is a colour of hair
 _STRANDS = 0.01  # of the head's size: thinner bridges between hair and clothes do not count
 _HANG = 0.3  # of the head's size: so far from the head there is hair below the chin
@@ -105,7 +104,7 @@ def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin) -> NDArray[np
     labels[strange & zones.hull] = FaceLabel.OTHER
     labels[_hair(view, zones, strange)] = FaceLabel.HAIR
     labels[cut.skin] = FaceLabel.SKIN
-    labels[(cut.skin & neck) | (strange & neck & zones.neck & (cut.alien < _SHADED))] = FaceLabel.NECK
+    labels[cut.skin & neck] = FaceLabel.NECK
     labels[cut.skin & ears] = FaceLabel.EARS
     labels[cut.skin & zones.nose] = FaceLabel.NOSE
     labels[cut.outline & cut.head] = FaceLabel.OTHER

@@ -63,11 +63,12 @@ def head_and_skin(view: WorkingView, zones: FaceZones) -> HeadAndSkin:
     colours = cv2.cvtColor(view.pixels, cv2.COLOR_RGB2LAB)
     body = zones.silhouette | zones.neck
     behind = _behind(view, body)
+    likely, border = _likely_head(view, zones, behind)
     head = cut_out(
         colours,
         sure=core,
-        likely=_likely_head(view, zones, behind),
-        never=~grown(body, _FAR * view.head) | behind & ~core,
+        likely=likely,
+        never=~grown(body, _FAR * view.head) | border | (behind & ~core),
     )
     near = grown(body, _SKIN * view.head)
     skin = cut_out(
@@ -99,19 +100,25 @@ def _behind(view: WorkingView, body: Mask) -> Mask:
     return grown(reached[1:-1, 1:-1].astype(bool), -1) & ~grown(body, -_CLEAR * view.head)
 
 
-def _likely_head(view: WorkingView, zones: FaceZones, behind: Mask) -> Mask:
-    """The fitted head, and around it what has the colours of its surroundings rather than of the picture's border."""
+def _likely_head(view: WorkingView, zones: FaceZones, behind: Mask) -> tuple[Mask, Mask]:
+    """What is likely to be head, and what of the picture's border is not, by how common colours are at either place.
+
+    Likely are the fitted head, and around it what has the colours of its surroundings rather than of the border.
+    """
     body = zones.silhouette | zones.neck
-    ring = grown(zones.silhouette, _HAIR * view.head) & ~zones.below_chin & ~behind
+    ring = grown(zones.silhouette, _HAIR * view.head)
     height, width = body.shape
     rim = max(2, round(_RIM * view.head))
     border = np.ones_like(body)
     border[rim:, rim : width - rim] = False
+    border &= ~ring & ~body
+    far = grown(body, _FAR * view.head)
+    ring &= ~zones.below_chin & ~behind
     codes = colour_codes(view.pixels)
-    outside = colour_share(codes, (border | ~grown(body, _FAR * view.head)) & ~body)
-    inside = colour_share(codes, ring)
+    outside, inside = colour_share(codes, border | ~far), colour_share(codes, ring)
     share = inside / np.maximum(inside + outside, 1e-9) * (inside > _RARE)
-    return (body & ~behind) | (ring & (share > 0.3)) | (grown(body, _FAR * view.head) & (share > 0.8) & ~zones.below_chin)
+    likely = (body & ~behind) | (ring & (share > 0.3)) | (far & (share > 0.8) & ~zones.below_chin)
+    return likely & ~border, border & (share < 0.8)
 
 
 def _outline(lightness: NDArray[np.float32], breadth: float) -> Mask:
