@@ -1,6 +1,7 @@
 """Eye landmarks that are shrunken or shifted, as detectors place them on cartoons, before and after snapping.
 
-usage: python benchmarks/snapping.py [FOLDER ...]   (pictures with .pts or .txt beside them; default: the bundled examples)
+usage: python benchmarks/snapping.py [FOLDER ...]
+(pictures with .pts or .txt beside them; default: the bundled examples)
 
 Eye error: mean distance of the twelve points from the closed polygon of the annotated lids, in percent of the
 outer-eye distance; points may slide along it.

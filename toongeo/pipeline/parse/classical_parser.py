@@ -14,9 +14,10 @@ from toongeo.io.landmark_array import landmark_array
 from toongeo.model.default_model import default_model
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
-from toongeo.pipeline.parse.face_zones import FaceZones, Mask, face_zones, filled, grown
+from toongeo.pipeline.parse.face_zones import FaceZones, face_zones
 from toongeo.pipeline.parse.find_lids import Lids, find_lids
 from toongeo.pipeline.parse.head_and_skin import HeadAndSkin, head_and_skin
+from toongeo.pipeline.parse.masks import Mask, filled, grown
 from toongeo.pipeline.parse.working_view import WorkingView, working_view
 from toongeo.protocols import FaceLabel, FaceParse, FittedFace
 
@@ -39,7 +40,8 @@ class ClassicalParser:
     head and a model of the skin's colour that is learned from the face itself. The eyes are found in the picture
     at its own resolution: shifted and scaled copies of the landmarks' contour are weighed by what is inside them and
     across their line. Brows are what differs from skin along their landmarks; nose and lips are where
-    the landmarks are. Dark outlines belong to neither side: they are ``OTHER``, and so are glasses; a beard is ``HAIR``.
+    the landmarks are. Dark outlines belong to neither side: they are ``OTHER``, and so are glasses; a beard that has
+    the colour of the hair is ``HAIR``.
 
     Parameters
     ----------

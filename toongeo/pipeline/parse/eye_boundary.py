@@ -50,7 +50,7 @@ def eye_boundary(parse: FaceParse, label: FaceLabel, near: Floats) -> EyeBoundar
     x0, y0, x1, y1 = xs.min() - 4, ys.min() - 4, xs.max() + 5, ys.max() + 5
     part = np.zeros((y1 - y0, x1 - x0), np.uint8)
     part[ys - y0, xs - x0] = 1
-    count, pieces, stats, middles = cv2.connectedComponentsWithStats(part, connectivity=8)
+    _, pieces, stats, middles = cv2.connectedComponentsWithStats(part, connectivity=8)
     areas = stats[1:, cv2.CC_STAT_AREA].astype(np.float64)
     away = np.linalg.norm(middles[1:] + [x0, y0] - near, axis=1)
     best = 1 + int((np.sqrt(areas) - away).argmax())

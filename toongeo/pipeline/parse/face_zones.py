@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from toongeo.model.ibug68 import LIP_RIMS, PARTS
 from toongeo.pipeline.parse.lid_patch import lid_unit
+from toongeo.pipeline.parse.masks import Mask, filled, grown
 from toongeo.pipeline.parse.working_view import WorkingView
 from toongeo.protocols import FittedFace
 from toongeo.render import rasterize
 
-__all__ = ["FaceZones", "Mask", "face_zones", "filled", "grown"]
+__all__ = ["FaceZones", "face_zones"]
 
 Floats = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 _BROW = 0.07  # outer-eye distances: half the breadth in which a brow's hair is looked for
 _LEAST = 1.5  # px; thinner brows are not resolved
@@ -38,7 +38,7 @@ class FaceZones:
     nose : between root, wings and base
     upper_lip, lower_lip, inner_mouth : between the lips' rims
     lower_face : below the nose
-    chin : the row below which there is only neck
+    below_chin : beyond the chin, where neck and clothes are
     """
 
     hull: Mask
@@ -61,7 +61,9 @@ def face_zones(view: WorkingView, landmarks: Floats, fit: FittedFace) -> FaceZon
     shape = view.pixels.shape[:2]
     points = view.place(landmarks)
     unit = lid_unit(points)
-    hull = filled(shape, np.vstack([points[PARTS["jaw"]], points[PARTS["brow_left"]][::-1], points[PARTS["brow_right"]][::-1]]))
+    hull = filled(
+        shape, np.vstack([points[PARTS["jaw"]], points[PARTS["brow_left"]][::-1], points[PARTS["brow_right"]][::-1]])
+    )
     seen = _seen_regions(view, fit)
     rims = {name: points[list(rim)] for name, rim in LIP_RIMS.items()}
     inner = filled(shape, _between(rims["lip_upper_inner"], rims["lip_lower_inner"]))
@@ -86,21 +88,6 @@ def face_zones(view: WorkingView, landmarks: Floats, fit: FittedFace) -> FaceZon
         lower_face=_beyond(shape, points[PARTS["nose"][3]], down),
         below_chin=_beyond(shape, points[PARTS["jaw"][8]], down),
     )
-
-
-def filled(shape: tuple[int, int], polygon: Floats) -> Mask:
-    """Pixels of a polygon (k, 2), its border among them."""
-    mask = np.zeros(shape, np.uint8)
-    cv2.fillPoly(mask, [np.rint(polygon * 16).astype(np.int32)], 1, shift=4)
-    return mask.astype(bool)
-
-
-def grown(mask: Mask, radius: float) -> Mask:
-    """Pixels within a radius, px, of a mask; of a negative one, those that far from its outside."""
-    if radius < 0:
-        return ~grown(~mask, -radius)
-    away = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)
-    return (away <= radius) if mask.any() else np.zeros_like(mask)
 
 
 def _seen_regions(view: WorkingView, fit: FittedFace) -> dict[str, Mask]:

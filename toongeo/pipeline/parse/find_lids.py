@@ -57,8 +57,8 @@ class LidWeights:
 @cache
 def lid_weights() -> LidWeights:
     """The weights that come with the library; ``benchmarks/train_lids.py`` makes them."""
-    with (files("toongeo.pipeline.parse") / "lid_weights.csv").open(encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    text = (files("toongeo.pipeline.parse") / "lid_weights.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
     columns = (np.array([float(row[key]) for row in rows]) for key in ("mean", "deviation", "weight"))
     return LidWeights(tuple(row["feature"] for row in rows), *columns)
 

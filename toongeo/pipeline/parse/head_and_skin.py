@@ -8,9 +8,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.pipeline.parse.cielab import cielab
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.cut_out import cut_out
-from toongeo.pipeline.parse.face_zones import FaceZones, Mask, grown
+from toongeo.pipeline.parse.face_zones import FaceZones
+from toongeo.pipeline.parse.masks import Mask, grown
 from toongeo.pipeline.parse.skin_surface import colour_mode, skin_surface
 from toongeo.pipeline.parse.working_view import WorkingView
 
@@ -55,12 +57,12 @@ class HeadAndSkin:
 
 def head_and_skin(view: WorkingView, zones: FaceZones) -> HeadAndSkin:
     """Two cuts: head from background, seeded by the fitted head; skin from the rest, by its own colour."""
-    lab = cv2.cvtColor(view.pixels.astype(np.float32) / 255, cv2.COLOR_RGB2LAB)
+    lab = cielab(view.pixels)
     outline = _outline(lab[..., 0], _STROKE * view.head)
     core = grown(zones.hull, -_CORE * view.head)
     features = zones.eyes | zones.brow_left | zones.brow_right | zones.inner_mouth | zones.upper_lip | zones.lower_lip
     alien = _alien(lab, core & ~features & ~outline, zones)
-    colours = cv2.cvtColor(view.pixels, cv2.COLOR_RGB2LAB)
+    colours = np.asarray(cv2.cvtColor(view.pixels, cv2.COLOR_RGB2LAB), np.uint8)
     body = zones.silhouette | zones.neck
     behind = _behind(view, body)
     likely, border = _likely_head(view, zones, behind)
@@ -107,7 +109,7 @@ def _likely_head(view: WorkingView, zones: FaceZones, behind: Mask) -> tuple[Mas
     """
     body = zones.silhouette | zones.neck
     ring = grown(zones.silhouette, _HAIR * view.head)
-    height, width = body.shape
+    width = body.shape[1]
     rim = max(2, round(_RIM * view.head))
     border = np.ones_like(body)
     border[rim:, rim : width - rim] = False
@@ -150,7 +152,7 @@ def _one_piece(mask: Mask, core: Mask) -> Mask:
     kept[np.unique(pieces[core])] = True
     kept[0] = False
     whole = kept[pieces]
-    count, holes, stats, _ = cv2.connectedComponentsWithStats((~whole).astype(np.uint8), connectivity=4)
+    _, holes, stats, _ = cv2.connectedComponentsWithStats((~whole).astype(np.uint8), connectivity=4)
     small = stats[:, cv2.CC_STAT_AREA] < 0.02 * max(int(core.sum()), 1)
     small[0] = False
     return whole | small[holes]

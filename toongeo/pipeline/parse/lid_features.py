@@ -59,7 +59,10 @@ def _bands(channels: Floats, contours: Floats, opening: Floats) -> list[Floats]:
     normal *= np.sign(outwards)[:, None, None]
     narrow = np.minimum(1.0, opening / _FULL_OPENING)[:, None, None].astype(np.float32)
     lines = [
-        [_taken(channels, contours + normal * (offset * narrow if offset < 0 else np.float32(offset))) for offset in band]
+        [
+            _taken(channels, contours + normal * (offset * narrow if offset < 0 else np.float32(offset)))
+            for offset in band
+        ]
         for band in (_INSIDE, _LINE, _OUTSIDE, _BEYOND)
     ]
     return [sum(band[1:], band[0]) / np.float32(len(band)) for band in lines]

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.model.ibug68 import LID_RIMS, MIRROR, PARTS
+from toongeo.pipeline.parse.cielab import cielab
+from toongeo.pipeline.parse.masks import filled
 from toongeo.pipeline.parse.skin_surface import SkinSurface, colour_mode, skin_surface
 
 __all__ = ["CHANNELS", "EYES_APART", "RESOLUTION", "LidPatch", "eye_points", "lid_patch", "lid_unit"]
@@ -80,11 +82,13 @@ def lid_patch(img: NDArray[np.uint8], landmarks: Floats, side: str) -> LidPatch:
     matrix, size = _frame(points, lid_unit(landmarks), mirrored=side == "left")
     pixels = _resampled(img, matrix, size)
     placed = points @ matrix[:, :2].T + matrix[:, 2]
-    lab = cv2.cvtColor(pixels.astype(np.float32) / 255, cv2.COLOR_RGB2LAB)
-    head = _filled(lab.shape[:2], cv2.convexHull(placed.astype(np.float32))[:, 0])
+    lab = cielab(pixels)
+    head = filled(lab.shape[:2], np.asarray(cv2.convexHull(placed.astype(np.float32)), np.float64)[:, 0])
     brow = _brow(lab.shape[:2], placed[PARTS["brow_right"]])
     seed = _cheek_colour(img, points, lab)
-    return LidPatch(_channels(lab, skin_surface(lab, seed, head & ~brow), head, brow), matrix, placed[eye_points("right")])
+    return LidPatch(
+        _channels(lab, skin_surface(lab, seed, head & ~brow), head, brow), matrix, placed[eye_points("right")]
+    )
 
 
 def _frame(points: Floats, unit: float, *, mirrored: bool) -> tuple[Floats, int]:
@@ -114,34 +118,31 @@ def _resampled(img: NDArray[np.uint8], matrix: Floats, size: int) -> NDArray[np.
     x1, y1 = np.clip(np.ceil(corners.max(axis=0)).astype(int) + reach, [x0 + 1, y0 + 1], limit)
     part = np.ascontiguousarray(img[y0:y1, x0:x1])
     if factor < 0.7:
-        part = cv2.GaussianBlur(part, (0, 0), 0.45 / factor, borderType=cv2.BORDER_REPLICATE)
+        part = np.asarray(cv2.GaussianBlur(part, (0, 0), 0.45 / factor, borderType=cv2.BORDER_REPLICATE), np.uint8)
     shifted = matrix.copy()
     shifted[:, 2] += matrix[:, :2] @ [x0, y0]
     method = cv2.INTER_CUBIC if factor >= 1 else cv2.INTER_LINEAR
-    return cv2.warpAffine(part, shifted, (size, size), flags=method, borderMode=cv2.BORDER_REPLICATE)
+    placed = cv2.warpAffine(part, shifted, (size, size), flags=method, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(placed, np.uint8)
 
 
 def _cheek_colour(img: NDArray[np.uint8], points: Floats, lab: NDArray[np.float32]) -> Floats:
     """The commonest Lab colour of the cheek on this side; that of the patch if the cheek is out of the picture."""
     factor = min(1.0, _SEED_SIDE / max(np.ptp(points, axis=0).max(), 1.0))
-    small = cv2.resize(img, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA) if factor < 1 else img
-    cheek = _filled(small.shape[:2], points[_CHEEK] * factor) & ~_filled(
+    small = img
+    if factor < 1:
+        small = np.asarray(cv2.resize(img, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8)
+    cheek = filled(small.shape[:2], points[_CHEEK] * factor) & ~filled(
         small.shape[:2], points[eye_points("right")] * factor
     )
-    colours = cv2.cvtColor(small[cheek][None].astype(np.float32) / 255, cv2.COLOR_RGB2LAB)[0] if cheek.any() else []
+    colours = cielab(np.ascontiguousarray(small[cheek][None]))[0]
     return colour_mode(np.asarray(colours if len(colours) > 5 else lab.reshape(-1, 3), np.float64))
 
 
 def _brow(shape: tuple[int, int], points: Floats) -> NDArray[np.bool_]:
     """The brow (5, 2) and all that is above it."""
-    mask = _filled(shape, np.vstack([points, points[::-1] - [0, 3 * RESOLUTION]])).astype(np.uint8)
+    mask = filled(shape, np.vstack([points, points[::-1] - [0, 3 * RESOLUTION]])).astype(np.uint8)
     cv2.polylines(mask, [np.round(points).astype(np.int32)], False, 1, _BROW_PX)
-    return mask.astype(bool)
-
-
-def _filled(shape: tuple[int, int], polygon: Floats) -> NDArray[np.bool_]:
-    mask = np.zeros(shape, np.uint8)
-    cv2.fillPoly(mask, [np.round(polygon).astype(np.int32)], 1)
     return mask.astype(bool)
 
 

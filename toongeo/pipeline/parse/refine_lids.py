@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 _LEVELS = np.arange(-5.0, 5.01, 0.5)  # px along the outward normal
 _BANDS = np.array([1.0, 2.0, 3.0])  # px on both sides that are compared
-_BEND, _LEAVE = 0.2, 0.04  # cost of a step between neighbours, per half px squared; of a px squared away
+_BEND, _LEAVE = 0.2, 0.15  # cost of a step between neighbours, per half px squared; of a px squared away
 _SMOOTH = np.array([1.0, 2.0, 3.0, 2.0, 1.0]) / 9
 
 
@@ -49,7 +49,8 @@ def _cheapest_ring(cost: Floats) -> NDArray[np.intp]:
     The first pass opens the ring; the second is held, at the sample opposite, where the first one went.
     """
     n, m = cost.shape
-    step = _BEND * (np.arange(m)[:, None] - np.arange(m)) ** 2.0
+    levels = np.arange(m, dtype=np.float64)
+    step = _BEND * (levels[:, None] - levels) ** 2
     opposite = _cheapest_path(cost, step, None)[n // 2]
     turned = np.roll(cost, -(n // 2), axis=0)
     return np.roll(_cheapest_path(turned, step, opposite), n // 2)
