@@ -27,6 +27,7 @@ Floats = NDArray[np.float64]
 
 _EARS = 0.06  # of the head's size: so far beyond the fitted ears there are ears
 _HAIR_SHARE = 0.01  # of the hair's pixels: so common is a colour of hair
+_LINES = 0.02  # of the head's size: the breadth of the outlines around it
 _STRANDS = 0.01  # of the head's size: thinner bridges between hair and clothes do not count
 _HANG = 0.3  # of the head's size: so far from the head there is hair below the chin
 _FINE = 4  # subpixels a side
@@ -101,15 +102,19 @@ def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin) -> NDArray[np
     """Labels (h, w) of the working view; later ones cover earlier ones."""
     labels = np.full(view.pixels.shape[:2], FaceLabel.BACKGROUND, np.uint8)
     strange = cut.head & ~cut.skin
-    neck = zones.below_chin & ~zones.hull
+    neck = (zones.below_chin | (zones.neck & zones.lower_face)) & ~zones.hull
     ears = grown(zones.ears, _EARS * view.head) & ~zones.hull & ~neck
     labels[strange & zones.hull] = FaceLabel.OTHER
-    labels[_hair(view, zones, strange)] = FaceLabel.HAIR
+    hair = _hair(view, zones, strange)
+    labels[hair] = FaceLabel.HAIR
     labels[cut.skin] = FaceLabel.SKIN
     labels[cut.skin & neck] = FaceLabel.NECK
     labels[cut.skin & ears] = FaceLabel.EARS
     labels[cut.skin & zones.nose] = FaceLabel.NOSE
-    labels[cut.outline & cut.head] = FaceLabel.OTHER
+    thick = hair & ~cut.outline
+    strands = hair & (colour_share(colour_codes(view.pixels), thick) > _HAIR_SHARE)
+    beside = grown(labels != FaceLabel.BACKGROUND, _LINES * view.head)  # not the lines of clothes
+    labels[cut.outline & cut.head & beside & ~strands] = FaceLabel.OTHER
     for brow, label in ((zones.brow_right, FaceLabel.BROW_RIGHT), (zones.brow_left, FaceLabel.BROW_LEFT)):
         labels[brow & (cut.alien > 0.5)] = label
     labels[zones.upper_lip] = FaceLabel.UPPER_LIP

@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 _LEVELS = np.arange(-5.0, 5.01, 0.5)  # px along the outward normal
 _BANDS = np.array([1.0, 2.0, 3.0])  # px on both sides that are compared
-_BEND, _LEAVE = 0.2, 0.15  # cost of a step between neighbours, per half px squared; of a px squared away
+_BEND, _LEAVE = 0.2, 0.1  # cost of a step between neighbours, per half px squared; of a px squared away
 _SMOOTH = np.array([1.0, 2.0, 3.0, 2.0, 1.0]) / 9
 
 
