@@ -32,14 +32,14 @@ class EyeBoundary:
         Centroid of its pixels.
     confidence : float
         Mean over its pixels.
-    solidity : float
-        Its share of its convex hull, by their pixels.
+    raggedness : float
+        Its length over that of its convex hull; 1 for convex outlines, little more for a slit that is bent.
     """
 
     ring: Floats
     middle: Floats
     confidence: float
-    solidity: float
+    raggedness: float
 
 
 def eye_boundary(parse: FaceParse, label: FaceLabel, near: Floats) -> EyeBoundary | None:
@@ -58,12 +58,11 @@ def eye_boundary(parse: FaceParse, label: FaceLabel, near: Floats) -> EyeBoundar
     ring = _outline(piece)
     if areas[best - 1] < _FEWEST or ring is None:
         return None
-    hull = cv2.fillConvexPoly(np.zeros_like(piece), cv2.convexHull(np.argwhere(piece)[:, ::-1].astype(np.int32)), 1)
+    hull = cv2.convexHull(ring.astype(np.float32))
+    raggedness = cv2.arcLength(ring.astype(np.float32), True) / max(cv2.arcLength(hull, True), 1e-9)
     py, px = np.nonzero(piece)
     confidence = parse.confidence[py + y0, px + x0].mean()
-    return EyeBoundary(
-        ring + [x0, y0], middles[best] + [x0, y0], float(confidence), float(areas[best - 1] / hull.sum())
-    )
+    return EyeBoundary(ring + [x0, y0], middles[best] + [x0, y0], float(confidence), float(raggedness))
 
 
 def _outline(piece: NDArray[np.uint8]) -> Floats | None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import PchipInterpolator
 
 from toongeo.pipeline.parse.lid_patch import RESOLUTION
 
@@ -62,6 +62,9 @@ def lid_candidates(contour: Floats) -> LidCandidates:
 
 
 def _curve(points: Floats) -> Floats:
-    """Samples (16, 2) of the spline through a lid's points, without its end."""
+    """Samples (16, 2) of a curve through a lid's points, without its end.
+
+    Monotone pieces: a cubic spline bulges far out where an eye is taller than wide.
+    """
     length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1) + 1e-6)]
-    return CubicSpline(length, points)(np.linspace(0, length[-1], ARC, endpoint=False))
+    return PchipInterpolator(length, points)(np.linspace(0, length[-1], ARC, endpoint=False))

@@ -25,7 +25,7 @@ _EYES = tuple(
 )
 _CONFIDENCE = 0.2  # least mean confidence of an eye
 _FARTHEST = 0.3  # outer-eye distances that its middle may be off
-_WIDTHS, _SOLIDITY = (0.4, 5.0), 0.7  # of the landmarks' width; least share of its convex hull
+_WIDTHS, _RAGGED = (0.4, 5.0), 1.3  # of the landmarks' width; longest outline, in those of its convex hull
 
 
 def snap_eyes(landmarks: ArrayLike, parse: FaceParse, *, mode: Mode = "arc") -> Floats:
@@ -108,7 +108,7 @@ def _plausible(boundary: EyeBoundary, known: Floats, unit: float) -> bool:
     width = np.ptp(known, axis=0).max()
     return bool(
         boundary.confidence >= _CONFIDENCE
-        and boundary.solidity >= _SOLIDITY
+        and boundary.raggedness <= _RAGGED
         and np.linalg.norm(boundary.middle - known.mean(axis=0)) <= _FARTHEST * unit
         and _WIDTHS[0] * width <= np.ptp(boundary.ring, axis=0).max() <= max(_WIDTHS[1] * width, 0.1 * unit)
     )
