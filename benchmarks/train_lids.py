@@ -19,7 +19,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 from scipy.optimize import minimize
-from snapping import disturbed, lid_distance, outer_eyes, pictures
+from snapping import EYES, disturbed, lid_distance, outer_eyes, pictures
 
 from toongeo import read_image, read_landmarks
 from toongeo.pipeline.parse.lid_candidates import lid_candidates, lid_contour
@@ -61,9 +61,20 @@ def cases(img: np.ndarray, truth: np.ndarray, name: str) -> tuple[list[Case], tu
         pairs += [(img, shrunk), (img, shifted)]
         if seed == 0:
             both = disturbed(shrunk, "shift", np.random.default_rng([seed, 102]))
-            pairs += [(img, both), (grey, shrunk), (grey, shifted), (grey, both)]
+            flat = flattened(truth)
+            pairs += [(img, both), (grey, shrunk), (grey, shifted), (grey, both), (img, flat)]
+            pairs += [(img, disturbed(flat, "shift", np.random.default_rng([seed, 103])))]
     found = [one_case(picture, given, truth, side, name) for picture, given in pairs for side in ("right", "left")]
     return [case for case, _ in found], found[0][1]
+
+
+def flattened(landmarks: np.ndarray) -> np.ndarray:
+    """Eyes of two thirds of their height."""
+    moved = landmarks.copy()
+    for eye in EYES:
+        middle = landmarks[eye].mean(axis=0)
+        moved[eye] = middle + [1, 2 / 3] * (landmarks[eye] - middle)
+    return moved
 
 
 def one_case(img, landmarks, truth, side, name):
@@ -72,7 +83,7 @@ def one_case(img, landmarks, truth, side, name):
     candidates = lid_candidates(contour)
     features = lid_features(patch.channels, candidates)
     middle = contour.mean(axis=0)
-    places = middle + candidates.shifts[:, None] + candidates.scales[:, None, None] * (patch.lids - middle)
+    places = middle + candidates.shifts[:, None] + candidates.scales[:, None] * (patch.lids - middle)
     linear = patch.matrix[:, :2]
     target = truth[eye_points(side)] @ linear.T + patch.matrix[:, 2]
     unit = outer_eyes(truth) * np.sqrt(abs(np.linalg.det(linear))) / 100

@@ -141,11 +141,11 @@ def test_a_contour_goes_through_the_corners():
 def test_candidates_are_shifted_and_scaled_copies():
     contour = lid_contour(LIDS)
     candidates = lid_candidates(contour)
-    still = (candidates.shifts == 0).all(axis=1) & (candidates.growths == 0)
+    still = (candidates.shifts == 0).all(axis=1) & (candidates.scales == 1).all(axis=1)
     assert still.sum() == 1
     np.testing.assert_allclose(candidates.contours[still][0], contour, atol=1e-9)
     middle = contour.mean(axis=0)
-    rebuilt = middle + candidates.shifts[:, None] + candidates.scales[:, None, None] * (contour - middle)
+    rebuilt = middle + candidates.shifts[:, None] + candidates.scales[:, None] * (contour - middle)
     np.testing.assert_allclose(candidates.contours, rebuilt)
 
 

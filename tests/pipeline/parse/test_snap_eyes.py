@@ -173,14 +173,14 @@ def test_a_turned_picture_gives_turned_eyes(landmarks):
 
 
 @pytest.mark.parametrize("name", ["blue_girl", "moustache_man"])
-@pytest.mark.parametrize(("factor", "shift"), [(0.6, 0.0), (1.0, 0.08)])
+@pytest.mark.parametrize(("factor", "shift"), [(0.6, 0.0), (1.0, 0.08), ([1.0, 0.65], 0.0)])
 def test_disturbed_eyes_of_drawings_find_their_lids(cartoon, name, factor, shift):
     img, truth = cartoon(name)
     unit = np.linalg.norm(truth[36] - truth[45])
     given = truth.copy()
     for rows in EYES.values():
         middle = truth[rows].mean(axis=0)
-        given[rows] = middle + factor * (truth[rows] - middle) + [0.6 * shift * unit, -0.8 * shift * unit]
+        given[rows] = middle + np.array(factor) * (truth[rows] - middle) + [0.6 * shift * unit, -0.8 * shift * unit]
     snapped = snap_eyes(given, parse_face(img, given))
 
     def distance(points):

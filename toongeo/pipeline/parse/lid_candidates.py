@@ -17,6 +17,7 @@ Floats = NDArray[np.float64]
 ARC = 16  # samples of a lid, the first corner among them
 _GROWTHS = np.array([-0.03, 0.0, 0.03, 0.06, 0.09, 0.12])  # outer-eye distances at the farthest point
 _REACH, _STEP = 0.141, 0.02  # outer-eye distances: how far, and how finely, shifts are tried
+_HEIGHTS = np.array([1.0, 1.5])  # drawn eyes are often taller than detectors take them to be
 _LEAST = 0.5  # of the given size
 
 
@@ -28,7 +29,8 @@ class LidCandidates:
     ----------
     contours : (k, 32, 2) float64, px of the patch
     shifts : (k, 2) float64, px
-    scales : (k,) float64
+    scales : (k, 2) float64
+        Across and along the height of the upright patch.
     growths : (k,) float64
         Outer-eye distances that the farthest point moves out by.
     radius : float
@@ -55,9 +57,13 @@ def lid_candidates(contour: Floats) -> LidCandidates:
     reach = np.arange(-int(_REACH / _STEP), int(_REACH / _STEP) + 1) * _STEP
     grid = np.stack(np.meshgrid(reach, reach), axis=2).reshape(-1, 2)
     grid = grid[np.hypot(*grid.T) <= _REACH] * RESOLUTION
-    growths, shifts = np.repeat(_GROWTHS, len(grid)), np.tile(grid, (len(_GROWTHS), 1))
-    scales = np.maximum(_LEAST, (radius + growths) / radius)
-    contours = middle + shifts[:, None] + scales[:, None, None] * (contour - middle)
+    sizes = np.stack(np.meshgrid(_HEIGHTS, _GROWTHS), axis=2).reshape(-1, 2)
+    heights, growths = np.repeat(sizes, len(grid), axis=0).T
+    shifts = np.tile(grid, (len(sizes), 1))
+    scales = np.maximum(_LEAST, (radius + growths) / radius)[:, None] * np.column_stack(
+        [np.ones_like(heights), heights]
+    )
+    contours = middle + shifts[:, None] + scales[:, None] * (contour - middle)
     return LidCandidates(contours, shifts, scales, growths, radius)
 
 

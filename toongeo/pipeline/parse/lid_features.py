@@ -148,7 +148,8 @@ def _moved(candidates: LidCandidates) -> dict[str, Floats]:
     """How far a candidate is from the given contour; 1 is a tenth of the outer-eye distance."""
     x, y = candidates.shifts.T / 10.0
     grown, far = candidates.growths * 10.0, np.hypot(x, y)
-    size = np.log(candidates.radius * candidates.scales)
+    size = np.log(candidates.radius * candidates.scales[:, 0])
+    taller = np.log(candidates.scales[:, 1] / candidates.scales[:, 0])
     found = {
         "moved": far,
         "moved²": far**2,
@@ -161,5 +162,8 @@ def _moved(candidates: LidCandidates) -> dict[str, Floats]:
         "|grown|": np.abs(grown),
         "moved |grown|": far * np.abs(grown),
         "size": size,
+        "taller": taller,
+        "taller |grown|": taller * np.abs(grown),
+        "taller moved": taller * far,
     }
     return {name: value.astype(np.float32) for name, value in found.items()}
