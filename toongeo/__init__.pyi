@@ -12,6 +12,7 @@ from toongeo.make_avatar import make_avatar as make_avatar
 from toongeo.model import MorphableModel as MorphableModel
 from toongeo.model import default_model as default_model
 from toongeo.pipeline import AlignedFace as AlignedFace
+from toongeo.pipeline import ClassicalParser as ClassicalParser
 from toongeo.pipeline import Eyes as Eyes
 from toongeo.pipeline import FaceFit as FaceFit
 from toongeo.pipeline import FitOptions as FitOptions
@@ -28,11 +29,15 @@ from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
+from toongeo.pipeline import parse_face as parse_face
 from toongeo.pipeline import photometric_fit as photometric_fit
 from toongeo.pipeline import rendered_picture as rendered_picture
 from toongeo.pipeline import residual_map as residual_map
+from toongeo.pipeline import snap_eyes as snap_eyes
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
 from toongeo.protocols import Coefficients as Coefficients
+from toongeo.protocols import FaceLabel as FaceLabel
+from toongeo.protocols import FaceParse as FaceParse
 from toongeo.render import PerspectiveCamera as PerspectiveCamera
 from toongeo.render import ScaledOrthographicCamera as ScaledOrthographicCamera
 from toongeo.render import render_mesh as render_mesh

@@ -1,4 +1,4 @@
-"""The way of the data, a stage a folder: fit, align, texture, rig."""
+"""The way of the data, a stage a folder: fit, parse, align, texture, rig."""
 
 from toongeo.pipeline.align.align_face import AlignedFace, align_face
 from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
@@ -10,6 +10,9 @@ from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 from toongeo.pipeline.fit.rendered_picture import rendered_picture
 from toongeo.pipeline.fit.residual_map import residual_map
 from toongeo.pipeline.fit.ridge_regressor import RidgeRegressor, train_ridge_regressor
+from toongeo.pipeline.parse.classical_parser import ClassicalParser
+from toongeo.pipeline.parse.parse_face import parse_face
+from toongeo.pipeline.parse.snap_eyes import snap_eyes
 from toongeo.pipeline.rig.build_rig import Rig, build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
@@ -20,6 +23,7 @@ from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 
 __all__ = [
     "AlignedFace",
+    "ClassicalParser",
     "Eyes",
     "FaceFit",
     "FitOptions",
@@ -37,7 +41,9 @@ __all__ = [
     "fit_3dmm",
     "fit_eyes",
     "train_ridge_regressor",
+    "parse_face",
     "photometric_fit",
     "rendered_picture",
     "residual_map",
+    "snap_eyes",
 ]

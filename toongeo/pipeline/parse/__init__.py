@@ -1,0 +1,1 @@
+"""Cuts a picture into the parts of a face, and moves eye landmarks to the lids (Pan et al. 2024, section 3.2.1)."""

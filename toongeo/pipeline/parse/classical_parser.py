@@ -1,0 +1,169 @@
+"""A face parser without a network."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo.geometry.one_thread import one_thread
+from toongeo.io.check_image import check_image
+from toongeo.io.landmark_array import landmark_array
+from toongeo.model.default_model import default_model
+from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
+from toongeo.pipeline.parse.face_zones import FaceZones, face_zones
+from toongeo.pipeline.parse.find_lids import Lids, find_lids
+from toongeo.pipeline.parse.head_and_skin import HeadAndSkin, head_and_skin
+from toongeo.pipeline.parse.masks import Mask, filled, grown
+from toongeo.pipeline.parse.working_view import WorkingView, working_view
+from toongeo.protocols import FaceLabel, FaceParse, FittedFace
+
+__all__ = ["ClassicalParser"]
+
+Floats = NDArray[np.float64]
+
+_EARS = 0.06  # of the head's size: so far beyond the fitted ears there are ears
+_HAIR_SHARE = 0.01  # of the hair's pixels: so common is a colour of hair
+_LINES = 0.02  # of the head's size: the breadth of the outlines around it
+_STRANDS = 0.01  # of the head's size: thinner bridges between hair and clothes do not count
+_HANG = 0.3  # of the head's size: so far from the head there is hair below the chin
+_FINE = 4  # subpixels a side
+
+
+@dataclass(frozen=True)
+class ClassicalParser:
+    """Labels the parts of a face by colour, outlines, landmarks and a fitted face; no network.
+
+    The head is cut from the background, and skin from hair and from what is worn, by GrabCut, seeded by the fitted
+    head and a model of the skin's colour that is learned from the face itself. The eyes are found in the picture
+    at its own resolution: shifted and scaled copies of the landmarks' contour are weighed by what is inside them and
+    across their line. Brows are what differs from skin along their landmarks; nose and lips are where
+    the landmarks are. Dark outlines belong to neither side: they are ``OTHER``, and so are glasses; a beard that has
+    the colour of the hair is ``HAIR``.
+
+    Parameters
+    ----------
+    head_px : float
+        Size of the head, px, at which all but the eyes is cut; larger is finer and slower.
+
+    Raises
+    ------
+    ValueError
+        If ``head_px`` is below 64.
+
+    Examples
+    --------
+    >>> from toongeo import read_image, read_landmarks
+    >>> from toongeo.model import data_path
+    >>> img = read_image(data_path("examples/portraits/bad_guy.png"))
+    >>> parse = ClassicalParser()(img, read_landmarks(data_path("examples/portraits/bad_guy.pts")))
+    >>> FaceLabel.HAIR in parse.labels
+    True
+    """
+
+    head_px: float = 200.0
+
+    def __post_init__(self) -> None:
+        if not self.head_px >= 64:
+            raise ValueError(f"head_px: expected at least 64, got {self.head_px}")
+
+    def __call__(self, img: NDArray[np.uint8], landmarks: ArrayLike, fit: FittedFace | None = None) -> FaceParse:
+        """Labels of the picture (H, W, 3) uint8 with landmarks (68, 2) px, NaN where missing, and its fitted face."""
+        check_image(img)
+        given = landmark_array(landmarks)
+        face = fit if fit is not None else fit_3dmm(None, given)
+        points = _completed(given, face)
+        on_head = face.camera.project(face.vertices[face.region("skin")])
+        view = working_view(img, np.vstack([on_head, points]), self.head_px)
+        zones = face_zones(view, points, face)
+        with one_thread():
+            cut = head_and_skin(view, zones)
+        labels, confidence = _full_size(view, _labels(view, zones, cut), cut.confidence, img.shape[:2])
+        for side, label in (("right", FaceLabel.EYE_RIGHT), ("left", FaceLabel.EYE_LEFT)):
+            _paint_eye(labels, confidence, find_lids(img, points, side), label)
+        return FaceParse(labels, confidence)
+
+
+def _completed(landmarks: Floats, fit: FittedFace) -> Floats:
+    """Landmarks (68, 2) with the missing ones where the fitted face has them."""
+    missing = np.isnan(landmarks[:, 0])
+    if not missing.any():
+        return landmarks
+    vertices = getattr(fit, "landmark_vertices", default_model().landmarks)
+    points = landmarks.copy()
+    points[missing] = fit.camera.project(fit.vertices[vertices[missing]])
+    return points
+
+
+def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin) -> NDArray[np.uint8]:
+    """Labels (h, w) of the working view; later ones cover earlier ones."""
+    labels = np.full(view.pixels.shape[:2], FaceLabel.BACKGROUND, np.uint8)
+    strange = cut.head & ~cut.skin
+    neck = (zones.below_chin | (zones.neck & zones.lower_face)) & ~zones.hull
+    ears = grown(zones.ears, _EARS * view.head) & ~zones.hull & ~neck
+    labels[strange & zones.hull] = FaceLabel.OTHER
+    hair = _hair(view, zones, strange)
+    labels[hair] = FaceLabel.HAIR
+    labels[cut.skin] = FaceLabel.SKIN
+    labels[cut.skin & neck] = FaceLabel.NECK
+    labels[cut.skin & ears] = FaceLabel.EARS
+    labels[cut.skin & zones.nose] = FaceLabel.NOSE
+    thick = hair & ~cut.outline
+    strands = hair & (colour_share(colour_codes(view.pixels), thick) > _HAIR_SHARE)
+    beside = grown(labels != FaceLabel.BACKGROUND, _LINES * view.head)  # not the lines of clothes
+    labels[cut.outline & cut.head & beside & ~strands] = FaceLabel.OTHER
+    for brow, label in ((zones.brow_right, FaceLabel.BROW_RIGHT), (zones.brow_left, FaceLabel.BROW_LEFT)):
+        labels[brow & (cut.alien > 0.5)] = label
+    labels[zones.upper_lip] = FaceLabel.UPPER_LIP
+    labels[zones.lower_lip] = FaceLabel.LOWER_LIP
+    labels[zones.inner_mouth] = FaceLabel.INNER_MOUTH
+    return labels
+
+
+def _hair(view: WorkingView, zones: FaceZones, strange: Mask) -> Mask:
+    """What of the head is not skin; within the face and below the chin, only what has a colour of the hair above.
+
+    Below the chin it must also hang together with the hair above, and not hang too far, or it is taken for clothes.
+    """
+    crown = strange & ~zones.below_chin & ~zones.hull
+    alike = crown | (strange & (colour_share(colour_codes(view.pixels), crown) > _HAIR_SHARE))
+    firm = grown(alike, -_STRANDS * view.head)
+    _, pieces = cv2.connectedComponents(firm.astype(np.uint8))
+    hanging = firm & np.isin(pieces, np.unique(pieces[firm & crown]))
+    allowed = grown(hanging, 2 * _STRANDS * view.head) & grown(zones.silhouette, _HANG * view.head)
+    return alike & (~zones.below_chin | allowed)
+
+
+def _full_size(
+    view: WorkingView, labels: NDArray[np.uint8], confidence: NDArray[np.float32], shape: tuple[int, int]
+) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    """Labels and confidence of the whole picture; each pixel takes the label that is largest once interpolated."""
+    width, height = (int(n) for n in view.size)
+    best = np.zeros((height, width), np.float32)
+    winner = np.zeros((height, width), np.uint8)
+    for label in np.unique(labels):
+        share = cv2.resize((labels == label).astype(np.float32), (width, height), interpolation=cv2.INTER_LINEAR)
+        better = share > best
+        best[better], winner[better] = share[better], label
+    full = np.full(shape, FaceLabel.BACKGROUND, np.uint8)
+    trust = np.ones(shape, np.float32)
+    full[view.window()] = winner
+    soft = cv2.resize(confidence, (width, height), interpolation=cv2.INTER_LINEAR)
+    trust[view.window()] = np.clip(soft * (2 * best - 1), 0, 1)
+    return full, trust
+
+
+def _paint_eye(labels: NDArray[np.uint8], confidence: NDArray[np.float32], lids: Lids, label: FaceLabel) -> None:
+    """Put an eye into labels and confidence, in place: the pixels that are half covered or more."""
+    height, width = labels.shape
+    x0, y0 = np.clip(np.floor(lids.contour.min(axis=0)).astype(int) - 1, 0, [width - 1, height - 1])
+    x1, y1 = np.clip(np.ceil(lids.contour.max(axis=0)).astype(int) + 2, [x0 + 1, y0 + 1], [width, height])
+    inner = (lids.contour - [x0, y0] + 0.5) * _FINE - 0.5
+    fine = filled(((y1 - y0) * _FINE, (x1 - x0) * _FINE), inner).astype(np.float32)
+    covered = cv2.resize(fine, (int(x1 - x0), int(y1 - y0)), interpolation=cv2.INTER_AREA)
+    eye = covered >= 0.5
+    labels[y0:y1, x0:x1][eye] = label
+    confidence[y0:y1, x0:x1][eye] = lids.confidence
