@@ -12,6 +12,7 @@ from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.io import landmark_array
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
+from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.align.visible_contour import visible_contour
@@ -84,8 +85,8 @@ def align_face(
     First the face flows most of the way by the smooth motion that is most likely when left and right move alike
     (:func:`~toongeo.pipeline.align.symmetric_flow.symmetric_flow`), which cannot fold it. Then the landmark vertices
     become the anchors of :func:`laplacian_align`, which closes the rest of the way. The rims of eyes and lips are
-    anchored between the landmarks too, more softly, with interpolated displacements. What lies behind an opening
-    (sockets, mouth cavity, teeth, tongue) is carried along with its rim.
+    anchored between the landmarks too, more softly, with interpolated displacements; upper and lower rims keep their
+    order. What lies behind an opening (sockets, mouth cavity, teeth, tongue) flows along.
 
     Parameters
     ----------
@@ -125,7 +126,9 @@ def align_face(
         V, at = symmetric_flow(fit.model, fit.camera, V, at, landmarks, depth, slide)
     elif slide:
         at = visible_contour(fit.model, fit.camera, _anchored(fit, V, at, landmarks, weight, laplacian), at)
-    aligned = carry_inner_parts(fit.model, fit.vertices, _anchored(fit, V, at, landmarks, weight, laplacian))
+    aligned = _anchored(fit, V, at, landmarks, weight, laplacian)
+    if not flow:
+        aligned = carry_inner_parts(fit.model, V, aligned)
     seen = np.isfinite(landmarks).all(1)
     error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - landmarks[seen], axis=1)
     return AlignedFace(
@@ -149,10 +152,12 @@ def _anchored(
     seen = np.isfinite(landmarks).all(1)
     anchors, targets_px = _merged(at[seen], landmarks[seen])
     rim, rim_shift_px = rim_anchors(fit.model, landmarks - fit.project(V[at]))
-    weights = np.r_[np.full(len(anchors), weight), np.full(len(rim), RIM_WEIGHT * weight)]
+    given = np.arange(len(anchors) + len(rim)) < len(anchors)
     anchors = np.r_[anchors, rim]
     targets_px = np.vstack([targets_px, fit.project(V[rim]) + rim_shift_px])
-    targets = fit.camera.unproject(targets_px, fit.camera.depth(V[anchors]))  # Eq. 11
+    targets_px, depth = keep_rims_apart(fit.model, fit.camera, V, anchors, targets_px, given)
+    targets = fit.camera.unproject(targets_px, depth)  # Eq. 11
+    weights = np.where(given, 1.0, RIM_WEIGHT) * weight
     return laplacian_align(V, fit.faces, anchors, targets, weight=weights, laplacian=laplacian)  # Eq. 10
 
 
