@@ -12,6 +12,7 @@ PAIRS = (
     ("lip_upper_inner", "lip_lower_inner"),
 )
 GAP_MM = 0.3  # between rims, in the picture or else in depth
+SPREAD_MM = 8.0  # over which a shift in depth fades out along the rim
 
 
 def keep_rims_apart(
@@ -63,7 +64,7 @@ def keep_rims_apart(
             for rim, lack, sign in short:
                 inner = slice(1, -1)  # the corners belong to both
                 if last:
-                    depth[rim[inner]] += sign * np.where(lack > 1e-6, lack, 0.0)[inner]
+                    depth[rim[inner]] += sign * _spread(px[rim] @ along / mm, lack)[inner]
                 else:
                     px[rim[inner]] += (0.5 * mm * sign * (lack * free[rim])[inner])[:, None] * up
     return px[anchors], depth[anchors]
@@ -73,3 +74,8 @@ def _height(px: np.ndarray, rim: np.ndarray, other: np.ndarray, along: np.ndarra
     """How far, in px, each point of a rim is above the other rim at the same place along the opening."""
     order = np.argsort(px[other] @ along, kind="stable")
     return px[rim] @ up - np.interp(px[rim] @ along, (px[other] @ along)[order], (px[other] @ up)[order])
+
+
+def _spread(place: np.ndarray, lack: np.ndarray) -> np.ndarray:
+    """The least that is enough at each place (mm) along a rim and fades out around it."""
+    return (lack * np.exp(-(((place[:, None] - place) / SPREAD_MM) ** 2))).max(1)

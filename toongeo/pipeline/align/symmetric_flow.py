@@ -10,7 +10,8 @@ from toongeo.pipeline.align.symmetric_field import FieldPrior, most_likely_field
 from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.protocols import HeadCamera
 
-STEPS = 3
+STRIDE = 0.1  # outer-eye distances; the farthest landmark goes so far in a step
+LEAST_STEPS, MOST_STEPS = 2, 5
 PRIOR = FieldPrior()
 
 
@@ -49,12 +50,19 @@ def symmetric_flow(
     """
     seen = np.isfinite(landmarks).all(1)
     unit = float(np.linalg.norm(np.subtract(*V[model.landmarks[list(OUTER_EYES)]])))
-    for step in range(STEPS):
+    left = LEAST_STEPS
+    for step in range(MOST_STEPS + 1):
         at = landmark_vertices[seen]
         jacobians = camera.jacobian(V[at]) * unit
         px = np.sqrt((jacobians**2).mean() * 3)  # of a unit across the view
-        missed = (landmarks[seen] - camera.project(V[at])) / (px * (STEPS - step))
-        moved = V + unit * most_likely_field(V / unit, V[at] / unit, jacobians / px, missed, PRIOR)
+        missed = (landmarks[seen] - camera.project(V[at])) / px
+        if step == 0:
+            left = int(np.clip(np.ceil(np.abs(missed).max() / STRIDE), LEAST_STEPS, MOST_STEPS))
+        moved = V + unit * most_likely_field(V / unit, V[at] / unit, jacobians / px, missed / max(left, 1), PRIOR)
         V = moved if depth == "scaled" else camera.unproject(camera.project(moved), camera.depth(V))
-        landmark_vertices = visible_contour(model, camera, V, landmark_vertices) if slide else landmark_vertices
+        left -= 1
+        if left < 0:
+            break  # the last step has closed what the noise of the prior had left
+        if slide and left > 0:
+            landmark_vertices = visible_contour(model, camera, V, landmark_vertices)
     return V, landmark_vertices
