@@ -11,7 +11,7 @@ PAIRS = (
     ("lid_upper_left", "lid_lower_left"),
     ("lip_upper_inner", "lip_lower_inner"),
 )
-GAP_MM = 0.3  # between rims, in the picture or else in depth
+GAP_MM = 0.3  # at most asked for between rims, in the picture or else in depth
 SPREAD_MM = 8.0  # over which a shift in depth fades out along the rim
 
 
@@ -56,17 +56,19 @@ def keep_rims_apart(
         along /= max(np.linalg.norm(along), 1e-9)
         up = np.array([-along[1], along[0]])
         up *= np.sign((start[upper].mean(0) - start[lower].mean(0)) @ up) or 1.0
-        for last in (False, True):
-            short = [
-                (rim, np.maximum(GAP_MM - _height(px, rim, other, along, up) * sign / mm, 0.0), sign)
-                for rim, other, sign in ((upper, lower, 1.0), (lower, upper, -1.0))
-            ]
-            for rim, lack, sign in short:
-                inner = slice(1, -1)  # the corners belong to both
-                if last:
-                    depth[rim[inner]] += sign * _spread(px[rim] @ along / mm, lack)[inner]
+        # No gap is asked for that was not there: towards the corners rims come together.
+        sides = [
+            (rim, other, sign, np.clip(sign * _height(start, rim, other, along, up), 0, GAP_MM * mm))
+            for rim, other, sign in ((upper, lower, 1.0), (lower, upper, -1.0))
+        ]
+        for in_depth in (False, True):
+            lacks = [np.maximum(gap - sign * _height(px, rim, other, along, up), 0) for rim, other, sign, gap in sides]
+            for (rim, _, sign, _), lack in zip(sides, lacks, strict=True):
+                inner = rim[1:-1]  # the corners belong to both
+                if in_depth:
+                    depth[inner] += sign * _spread(px[rim] @ along / mm, lack / mm)[1:-1]
                 else:
-                    px[rim[inner]] += (0.5 * mm * sign * (lack * free[rim])[inner])[:, None] * up
+                    px[inner] += (0.5 * sign * (lack * free[rim])[1:-1])[:, None] * up
     return px[anchors], depth[anchors]
 
 
