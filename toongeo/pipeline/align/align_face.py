@@ -14,6 +14,7 @@ from toongeo.model import MorphableModel
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.rim_anchors import rim_anchors
+from toongeo.pipeline.align.straighten_teeth import straighten_teeth
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.pipeline.fit.face_fit import FaceFit
@@ -86,7 +87,7 @@ def align_face(
     (:func:`~toongeo.pipeline.align.symmetric_flow.symmetric_flow`), which cannot fold it. Then the landmark vertices
     become the anchors of :func:`laplacian_align`, which closes the rest of the way. The rims of eyes and lips are
     anchored between the landmarks too, more softly, with interpolated displacements; upper and lower rims keep their
-    order. What lies behind an opening (sockets, mouth cavity, teeth, tongue) flows along.
+    order. What lies behind an opening (sockets, mouth cavity) flows along; teeth and tongue do not bend.
 
     Parameters
     ----------
@@ -127,8 +128,8 @@ def align_face(
     elif slide:
         at = visible_contour(fit.model, fit.camera, _anchored(fit, V, at, landmarks, weight, laplacian), at)
     aligned = _anchored(fit, V, at, landmarks, weight, laplacian)
-    if not flow:
-        aligned = carry_inner_parts(fit.model, V, aligned)
+    inner = straighten_teeth if flow else carry_inner_parts
+    aligned = inner(fit.model, fit.vertices, aligned)
     seen = np.isfinite(landmarks).all(1)
     error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - landmarks[seen], axis=1)
     return AlignedFace(
