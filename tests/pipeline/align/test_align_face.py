@@ -56,12 +56,20 @@ def test_anchors_keep_their_depth_by_eq_11(girl):
         np.testing.assert_allclose(after, before, atol=0.05)
 
 
-def exaggerated_face(model, seed):
-    """A random face whose nose, or whose eyes, have grown about a centre inside, and how a camera sees it."""
+# Landmarks about whose centre a part grows, how far behind them the centre lies (mm), its radius (mm), its growth.
+GROWN = {
+    "nose": ((range(30, 34), 20, 30, 1.5),),
+    "eyes": ((range(36, 42), 8, 22, 1.4), (range(42, 48), 8, 22, 1.4)),
+    "chin": ((range(8, 9), 0, 45, 1.4),),
+    "mouth": ((range(48, 60), 0, 32, 1.4),),
+}
+
+
+def exaggerated_face(model, part, seed):
+    """A random face of which a part has grown about a centre inside, and its landmarks as a camera sees them."""
     rng = np.random.default_rng(seed)
     V = model.vertices(rng.normal(0, 0.8, len(model.identity)))
-    places = [(range(30, 34), 20, 30, 1.6)] if seed % 2 else [(range(36, 42), 8, 22, 1.4), (range(42, 48), 8, 22, 1.4)]
-    for points, behind, radius, growth in places:
+    for points, behind, radius, growth in GROWN[part]:
         centre = V[model.landmarks[list(points)]].mean(0) - [0, 0, behind]
         near = np.exp(-((np.linalg.norm(V - centre, axis=1) / radius) ** 4))
         V = V + (growth - 1) * near[:, None] * (V - centre)
@@ -73,15 +81,16 @@ def test_scaled_depth_is_nearer_to_the_truth_than_kept_depth(model):
     """Mean distance over the face, after the best similarity, of exaggerated faces that are known in 3D."""
     front = model.region("face")
     distances = []
-    for seed in range(6):
-        truth, landmarks = exaggerated_face(model, seed)
-        fit = fit_3dmm(None, landmarks)
-        faces = [align_face(fit, landmarks, flow=False), *(align_face(fit, landmarks, depth=d) for d in DEPTHS)]
-        for V in (face.vertices[front] for face in faces):
-            scale, rotation, shift = similarity(V, truth[front])
-            distances.append(np.linalg.norm(scale * V @ rotation.T + shift - truth[front], axis=1).mean())
-    plain, kept, scaled = np.reshape(distances, (6, 3)).mean(0)
-    assert scaled < 0.95 * kept and kept < plain
+    for part in GROWN:
+        for seed in range(2):
+            truth, landmarks = exaggerated_face(model, part, seed)
+            fit = fit_3dmm(None, landmarks)
+            faces = [align_face(fit, landmarks, flow=False), *(align_face(fit, landmarks, depth=d) for d in DEPTHS)]
+            for V in (face.vertices[front] for face in faces):
+                scale, rotation, shift = similarity(V, truth[front])
+                distances.append(np.linalg.norm(scale * V @ rotation.T + shift - truth[front], axis=1).mean())
+    plain, kept, scaled = np.reshape(distances, (-1, 3)).mean(0)
+    assert scaled < 0.96 * kept and kept < 0.97 * plain
 
 
 @pytest.mark.parametrize("name", CARTOONS)
@@ -90,10 +99,10 @@ def test_lids_and_lips_keep_their_order_and_nothing_folds(cartoon, name):
     img, landmarks = cartoon(name)
     fit = fit_3dmm(img, landmarks)
     met = fit.project(fit.vertices[fit.landmark_vertices])
-    for wanted in (landmarks, landmarks + 0.2 * (landmarks - met)):
+    for wanted, bound in ((landmarks, 0.003), (landmarks + 0.2 * (landmarks - met), 0.01)):
         face = align_face(fit, wanted)
         front = face.faces[face.region("face")[face.faces].all(1)]
-        assert mesh_quality(face.vertices, front).intersecting_fraction < 0.005
+        assert mesh_quality(face.vertices, front).intersecting_fraction < bound
         px = face.project(face.vertices)
         for side in ("left", "right"):
             upper, lower = (rim_path(face.model, f"lid_{lid}_{side}") for lid in ("upper", "lower"))
