@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from toongeo.geometry._components import components
 from toongeo.geometry._loose_parts import loose_parts
 from toongeo.geometry._ring_rotations import ring_rotations
-from toongeo.geometry.adjacency import adjacency
 from toongeo.geometry.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.uniform_laplacian import uniform_laplacian
 from toongeo.geometry.validate_mesh import validate_mesh
@@ -39,11 +39,17 @@ class AnchoredMesh:
     component: NDArray[np.int64]  # (a,) that of each anchor
     moving: NDArray[np.int64]  # vertices of the components that hold an anchor, but for the fixed ones
     position: NDArray[np.int64]  # (a,) anchors as indices into `moving`
-    graph: sp.csr_matrix  # (n, n) adjacency
     laplacian: sp.csr_matrix  # (n, n)
     columns: sp.csr_matrix  # of the Laplacian, those of the moving vertices
     gram: sp.csr_matrix  # their products
     loose: list[tuple[NDArray[np.int64], NDArray[np.int64]]]  # parts that follow, each with what it follows
+
+    @cached_property
+    def graph(self) -> sp.csr_matrix:
+        """Adjacency (n, n): every edge has a weight in the Laplacian."""
+        A = sp.csr_matrix((self.laplacian != 0).astype(np.float64))
+        A.setdiag(0.0)
+        return A
 
     def pull(
         self, targets: NDArray[np.float64], rest: NDArray[np.float64]
@@ -92,7 +98,7 @@ def anchored_mesh(
     # A component without an anchor would make the system singular; left out, it stays exactly where it is.
     anchored = np.isin(component, component[unique])
     moving = np.flatnonzero(anchored & ~held)
-    columns = sp.csr_matrix(L[:, moving])
+    columns = L if len(moving) == len(V) else sp.csr_matrix(L[:, moving])
     held_parts = np.isin(component, component[np.flatnonzero(anchored | held)])
     return AnchoredMesh(
         V=V,
@@ -104,7 +110,6 @@ def anchored_mesh(
         component=component[unique],
         moving=moving,
         position=np.searchsorted(moving, unique),
-        graph=adjacency(F, len(V)),
         laplacian=L,
         columns=columns,
         gram=sp.csr_matrix(columns.T @ columns),

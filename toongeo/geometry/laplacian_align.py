@@ -106,8 +106,10 @@ def _solved(
     displacement, force = np.zeros((2, len(mesh.moving), 3))
     displacement[mesh.position[hard]] = pull[hard]
     force[mesh.position[~hard]] = weights[~hard, None] * pull[~hard]
-    force -= K @ displacement
-    factor = factor_spd(K[free][:, free]) if len(free) else None
+    if hard.any():
+        force -= K @ displacement
+        K = K[free][:, free]
+    factor = factor_spd(K) if len(free) else None
     moved = mesh.V.copy()
     for round_ in range(rotations + 1):
         turn = turned_pull(mesh, mesh.V, moved) if round_ else 0.0
