@@ -35,8 +35,8 @@ def crop_faces(model: MorphableModel, crop: Crop) -> np.ndarray:
         raise ValueError(f"crop: expected one of {', '.join(get_args(Crop))}, got {crop!r}")
     if crop != "face":
         return np.arange(len(model.faces))
-    inner = np.any([model.regions[name] for name in INNER if name in model.regions] or [False], axis=0)
-    kept = model.region("face") | inner
+    inner = [model.regions[name] for name in INNER if name in model.regions]
+    kept = np.any([model.region("face"), *inner], axis=0)
     quads = len(model.faces) // 2
     whole = kept[model.faces].all(1)
     if 2 * quads == len(model.faces) == 2 * len(model.quads):  # both halves of a quad or none: no saw teeth

@@ -8,9 +8,24 @@ from scipy.interpolate import CubicSpline
 
 from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS, PARTS
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.protocols import FaceLabel, FaceParse
 from toongeo.render import Fragments, rasterize
 
 MAX_SIDE = 1024  # px; a larger crop is reduced, which also filters it before it is sampled
+SKIN_SIDE = 480  # px; skin is looked for at this size
+RIM = 0.012  # of the face's width: by how much the silhouette is eroded
+FEATHER = 0.04  # of the face's width: over this distance from the rim of the skin its trust grows to 1
+PARSED_FACE = (
+    FaceLabel.SKIN,
+    FaceLabel.BROW_LEFT,
+    FaceLabel.BROW_RIGHT,
+    FaceLabel.EYE_LEFT,
+    FaceLabel.EYE_RIGHT,
+    FaceLabel.NOSE,
+    FaceLabel.UPPER_LIP,
+    FaceLabel.LOWER_LIP,
+    FaceLabel.INNER_MOUTH,
+)
 SPREAD = (
     7.0,
     13.0,
@@ -43,6 +58,10 @@ class FacePicture:
         Among them those that have the colour of its skin: no outlines, brows or lips.
     openings : (h, w) bool
         Pixels between the lids and between the lips.
+    weight : (h, w) float32
+        How far a pixel is to be believed: 0 outside the skin, growing inwards, times the confidence of the parse.
+    hair : (h, w) bool or None
+        Pixels parsed as hair; None without a parse.
     scale : float
         Pixels of the crop per pixel of the picture.
     origin : (2,) float64
@@ -56,6 +75,8 @@ class FacePicture:
     skin: np.ndarray
     sure: np.ndarray
     openings: np.ndarray
+    weight: np.ndarray
+    hair: np.ndarray | None
     scale: float
     origin: np.ndarray
 
@@ -64,7 +85,7 @@ class FacePicture:
         return (px - self.origin + 0.5) * self.scale - 0.5
 
 
-def face_picture(img: np.ndarray, face: AlignedFace) -> FacePicture:
+def face_picture(img: np.ndarray, face: AlignedFace, parse: FaceParse | None = None) -> FacePicture:
     """Crop a picture to the projected face and find the skin in it.
 
     Skin is where the front of the face projects, less the eyes and the open mouth. Beyond the hull of the landmarks
@@ -74,11 +95,20 @@ def face_picture(img: np.ndarray, face: AlignedFace) -> FacePicture:
     ----------
     img : (H, W, 3) uint8 RGB
     face : AlignedFace
+    parse : FaceParse, optional
+        Then only what it calls face is skin, and what it calls background has no say in what colour skin is.
 
     Returns
     -------
     FacePicture
+
+    Raises
+    ------
+    ValueError
+        If the parse is of another size than the picture.
     """
+    if parse is not None and parse.labels.shape != img.shape[:2]:
+        raise ValueError(f"parse: expected labels of the picture's shape {img.shape[:2]}, got {parse.labels.shape}")
     px = face.project(face.vertices)
     low, high = px[face.region("face")].min(0), px[face.region("face")].max(0)
     margin = 0.1 * (high - low).max()
@@ -98,8 +128,65 @@ def face_picture(img: np.ndarray, face: AlignedFace) -> FacePicture:
     for rims in OPENINGS:
         openings |= opening_mask(landmarks, rims, crop.shape[:2])
     front = _front_pixels(face, fragments, cosines) & ~openings
-    skin, sure = _skin_pixels(crop, landmarks, front)
-    return FacePicture(np.ascontiguousarray(crop), points, cosines, fragments, skin, sure, openings, scale, start)
+    box = slice(start[1], end[1]), slice(start[0], end[0])
+    parts = None if parse is None else _resized(parse.labels[box], crop.shape, cv2.INTER_NEAREST)
+    width = float(np.ptp(landmarks[:, 0]))
+    skin, sure = _skin_of(crop, landmarks, front, parts, max(1, round(RIM * width)))
+    weight = _weight(skin, openings, FEATHER * width)
+    if parse is not None:
+        # Amid the face a parser may doubt whether it sees lip or skin, but not whether it sees the face.
+        confidence = np.clip(2 * _resized(parse.confidence[box], crop.shape, cv2.INTER_AREA), 0, 1)
+        weight *= np.maximum(confidence, cv2.GaussianBlur(_core(landmarks, front.shape), (0, 0), max(1.0, RIM * width)))
+    hair = None if parts is None else parts == FaceLabel.HAIR
+    return FacePicture(
+        np.ascontiguousarray(crop), points, cosines, fragments, skin, sure, openings, weight, hair, scale, start
+    )
+
+
+def _resized(layer: np.ndarray, shape: tuple[int, ...], method: int) -> np.ndarray:
+    """A layer of the picture at the size of the crop."""
+    return np.asarray(cv2.resize(layer, (shape[1], shape[0]), interpolation=method))
+
+
+def _skin_of(
+    crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray, parts: np.ndarray | None, rim: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Skin and sure skin (h, w) bool of the crop, found at a reduced size, with eroded silhouettes."""
+    scale = min(1.0, SKIN_SIDE / max(crop.shape[:2]))
+    allowed = np.ones(front.shape, np.uint8)
+    if parts is not None:
+        # Beards, glasses and drawn lines are part of the face.
+        drawn = (parts != FaceLabel.BACKGROUND) & (_core(landmarks, front.shape) > 0)
+        allowed = (np.isin(parts, PARSED_FACE) | drawn).astype(np.uint8)
+        if (allowed & front).any():
+            # What is not the face takes its middle colour, so that no background blurs into the statistics.
+            crop = np.where(
+                allowed[..., None] > 0, crop, np.median(crop[(allowed & front) > 0], axis=0).astype(np.uint8)
+            )
+    small = crop if scale == 1 else cv2.resize(crop, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    reduced = front if scale == 1 else _resized(front.astype(np.uint8), small.shape, cv2.INTER_AREA) > 0
+    masks = _skin_pixels(small, (landmarks + 0.5) * scale - 0.5, reduced)
+    # What lies beyond the picture is unknown, so its edge erodes too.
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim + 1, 2 * rim + 1))
+    inside = cv2.erode(allowed, disc, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool) & front
+    found = [_resized(mask.astype(np.float32), crop.shape, cv2.INTER_LINEAR) > 0.5 for mask in masks]
+    return found[0] & inside, found[1] & found[0] & inside
+
+
+def _core(landmarks: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """1 (h, w) float32 between eyes, nose, mouth and chin, 0 elsewhere."""
+    core = np.zeros(shape[:2], np.float32)
+    cv2.fillConvexPoly(core, cv2.convexHull(np.round(landmarks[CORE]).astype(np.int32)), 1.0)
+    return core
+
+
+def _weight(skin: np.ndarray, openings: np.ndarray, feather: float) -> np.ndarray:
+    """Trust (h, w) float32 that grows from the outer rim of the skin, and at once from the rims of the openings."""
+    support = (skin | openings).astype(np.uint8)
+    distance = cv2.distanceTransform(np.pad(support, 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
+    growth = np.clip((distance - 1) / max(feather, 1.0), 0, 1)
+    sharp = cv2.GaussianBlur((skin | ~support.astype(bool)).astype(np.float32), (0, 0), 1.0)
+    return (growth * growth * (3 - 2 * growth) * np.clip(2 * sharp - 1, 0, 1)).astype(np.float32)
 
 
 def opening_mask(
