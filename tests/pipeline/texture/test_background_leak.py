@@ -45,3 +45,9 @@ def worst_leak(img, landmarks, *, shift=0.0, parsed, lift=0.35):
 @pytest.mark.parametrize("name", ["astronaut", "bad_guy", "moustache_man", "blonde_girl_threequarter"])
 def test_with_a_parse_no_face_texel_knows_the_background(cartoon, name, shift):
     assert worst_leak(*cartoon(name), shift=shift, parsed=True) == 0
+
+
+@pytest.mark.parametrize("shift", [0.0, 4.0])
+@pytest.mark.parametrize("name", ["astronaut", "bad_guy", "moustache_man", "blonde_girl_threequarter"])
+def test_without_a_parse_the_background_moves_no_face_texel(cartoon, name, shift):
+    assert worst_leak(*cartoon(name), shift=shift, parsed=False) <= TWO_PERCENT

@@ -30,6 +30,7 @@ SPREAD = (
     7.0,
     13.0,
 )  # CIELAB units: least and largest distance from the skin's colour that still counts as skin
+STRANGE = 26.0  # CIELAB units, lightness halved: farther than this from every tone of the face is not face
 FRONTAL = 0.2  # cosine to the viewing direction below which a surface is too oblique to be trusted
 # Upper and lower rim of each opening.
 EYE_RIGHT, EYE_LEFT = ((LID_RIMS[f"lid_upper_{side}"], LID_RIMS[f"lid_lower_{side}"]) for side in ("right", "left"))
@@ -136,7 +137,7 @@ def face_picture(img: np.ndarray, face: AlignedFace, parse: FaceParse | None = N
     if parse is not None:
         # Amid the face a parser may doubt whether it sees lip or skin, but not whether it sees the face.
         confidence = np.clip(2 * _resized(parse.confidence[box], crop.shape, cv2.INTER_AREA), 0, 1)
-        weight *= np.maximum(confidence, cv2.GaussianBlur(_core(landmarks, front.shape), (0, 0), max(1.0, RIM * width)))
+        weight *= np.maximum(confidence, cv2.GaussianBlur(_amid(landmarks, front.shape), (0, 0), max(1.0, RIM * width)))
     hair = None if parts is None else parts == FaceLabel.HAIR
     return FacePicture(
         np.ascontiguousarray(crop), points, cosines, fragments, skin, sure, openings, weight, hair, scale, start
@@ -153,10 +154,16 @@ def _skin_of(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Skin and sure skin (h, w) bool of the crop, found at a reduced size, with eroded silhouettes."""
     scale = min(1.0, SKIN_SIDE / max(crop.shape[:2]))
-    allowed = np.ones(front.shape, np.uint8)
-    if parts is not None:
+    if parts is None:
+        strange = _strange(crop, landmarks)
+        allowed = (~strange).astype(np.uint8)
+        # One colour for all that surrounds the face: which one it was must not show.
+        core = _core(_inwards(landmarks), crop.shape) > 0
+        dark = bool(core.any()) and np.median(crop[core]) > 127
+        crop = np.where(strange[..., None], np.uint8(0 if dark else 255), crop)
+    else:
         # Beards, glasses and drawn lines are part of the face.
-        drawn = (parts != FaceLabel.BACKGROUND) & (_core(landmarks, front.shape) > 0)
+        drawn = (parts != FaceLabel.BACKGROUND) & (_amid(landmarks, front.shape) > 0)
         allowed = (np.isin(parts, PARSED_FACE) | drawn).astype(np.uint8)
         if (allowed & front).any():
             # What is not the face takes its middle colour, so that no background blurs into the statistics.
@@ -173,6 +180,43 @@ def _skin_of(
     return found[0] & inside, found[1] & found[0] & inside
 
 
+def _amid(landmarks: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """1 (h, w) float32 in the core and on the brows, which a parser may take for hair or lines."""
+    amid = _core(landmarks, shape)
+    corners = np.round(landmarks).astype(np.int32)
+    thickness = max(1, round(0.06 * np.ptp(landmarks[:, 0])))
+    for brow, eye in (("brow_right", "eye_right"), ("brow_left", "eye_left")):
+        cv2.polylines(amid, [corners[PARTS[brow]]], False, 1.0, thickness)
+        cv2.fillConvexPoly(amid, cv2.convexHull(np.vstack([corners[PARTS[brow]], corners[PARTS[eye]]])), 1.0)
+    return amid
+
+
+def _strange(crop: np.ndarray, landmarks: np.ndarray) -> np.ndarray:
+    """Pixels (h, w) bool about the core of the face that have none of the colours within it: background and hair.
+
+    Within the hull of the landmarks only those that reach its outside are strange; others are drawn on the face.
+    """
+    core = _core(_inwards(landmarks), crop.shape) > 0
+    if not core.any():
+        return np.zeros(core.shape, bool)
+    lab = cv2.cvtColor(crop, cv2.COLOR_RGB2LAB).astype(np.float32)
+    lab[..., 0] *= 0.5
+    tones = _skin_tones(lab, core)
+    distance = np.min([np.linalg.norm(lab - tone, axis=2) for tone in tones], axis=0)
+    far = (distance > STRANGE) & ~core
+    hull = np.zeros(core.shape, np.uint8)
+    cv2.fillConvexPoly(hull, cv2.convexHull(np.round(landmarks).astype(np.int32)), 1)
+    _, labels = cv2.connectedComponents(far.astype(np.uint8))
+    return far & np.isin(labels, np.unique(labels[far & (hull == 0)]))
+
+
+def _inwards(landmarks: np.ndarray) -> np.ndarray:
+    """Landmarks whose jaw is drawn towards the nose: where jaw points are off, the core still holds no background."""
+    moved = landmarks.copy()
+    moved[PARTS["jaw"]] += 0.2 * (landmarks[33] - landmarks[PARTS["jaw"]])
+    return moved
+
+
 def _core(landmarks: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     """1 (h, w) float32 between eyes, nose, mouth and chin, 0 elsewhere."""
     core = np.zeros(shape[:2], np.float32)
@@ -182,10 +226,13 @@ def _core(landmarks: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
 
 def _weight(skin: np.ndarray, openings: np.ndarray, feather: float) -> np.ndarray:
     """Trust (h, w) float32 that grows from the outer rim of the skin, and at once from the rims of the openings."""
-    support = (skin | openings).astype(np.uint8)
+    # Gaps narrower than the feather, such as lines, are no rims.
+    width = 1 + 2 * round(max(feather, 1.0) / 2)
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
+    support = cv2.morphologyEx((skin | openings).astype(np.uint8), cv2.MORPH_CLOSE, disc)
     distance = cv2.distanceTransform(np.pad(support, 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
     growth = np.clip((distance - 1) / max(feather, 1.0), 0, 1)
-    sharp = cv2.GaussianBlur((skin | ~support.astype(bool)).astype(np.float32), (0, 0), 1.0)
+    sharp = cv2.GaussianBlur(skin.astype(np.float32), (0, 0), 1.0)
     return (growth * growth * (3 - 2 * growth) * np.clip(2 * sharp - 1, 0, 1)).astype(np.float32)
 
 
