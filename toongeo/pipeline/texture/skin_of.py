@@ -86,7 +86,7 @@ def _strange(crop: np.ndarray, landmarks: np.ndarray) -> np.ndarray:
     lab[..., 0] *= 0.5
     tones = _skin_tones(lab, core)
     distance = np.min([np.linalg.norm(lab - tone, axis=2) for tone in tones], axis=0)
-    far = (distance > STRANGE) & ~core
+    far = (distance > STRANGE) & (amid(_inwards(landmarks), crop.shape) == 0)  # brows may touch the hair
     hull = np.zeros(core.shape, np.uint8)
     cv2.fillConvexPoly(hull, cv2.convexHull(np.round(landmarks).astype(np.int32)), 1)
     _, labels = cv2.connectedComponents(far.astype(np.uint8))
@@ -116,7 +116,7 @@ def skin_weight(skin: np.ndarray, openings: np.ndarray, feather: float) -> np.nd
     distance = cv2.distanceTransform(np.pad(support, 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
     growth = np.clip((distance - 1) / max(feather, 1.0), 0, 1)
     sharp = cv2.GaussianBlur(skin.astype(np.float32), (0, 0), 1.0)
-    return (growth * growth * (3 - 2 * growth) * np.clip(2 * sharp - 1, 0, 1)).astype(np.float32)
+    return (growth * growth * (3 - 2 * growth) * np.clip(2 * sharp, 0, 1)).astype(np.float32)
 
 
 def _skin_tones(lab: np.ndarray, core: np.ndarray) -> np.ndarray:
