@@ -54,6 +54,7 @@ __getattr__, __dir__, __all__ = attach(
         "AlignedFace": "pipeline",
         "diffuse_texture": "pipeline",
         "bake_texture": "pipeline",
+        "texture_coordinates": "pipeline",
         "bake_eyes": "pipeline",
         "build_rig": "pipeline",
         "Rig": "pipeline",

@@ -34,6 +34,7 @@ from toongeo.pipeline import photometric_fit as photometric_fit
 from toongeo.pipeline import rendered_picture as rendered_picture
 from toongeo.pipeline import residual_map as residual_map
 from toongeo.pipeline import snap_eyes as snap_eyes
+from toongeo.pipeline import texture_coordinates as texture_coordinates
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
 from toongeo.protocols import Coefficients as Coefficients
 from toongeo.protocols import FaceLabel as FaceLabel
