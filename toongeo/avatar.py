@@ -15,7 +15,7 @@ from toongeo.io import SceneMesh, write_glb, write_obj, write_ply
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
 from toongeo.pipeline.rig.gaze import gaze_names
 from toongeo.pipeline.rig.weight_vector import weight_vector
-from toongeo.protocols import Camera
+from toongeo.protocols import Camera, FaceParse
 from toongeo.render import (
     ScaledOrthographicCamera,
     Surface,
@@ -38,6 +38,7 @@ class Avatar:
     Attributes
     ----------
     fit : FaceFit
+    parse : FaceParse
     face : AlignedFace
     rig : Rig
         ``rig.names`` are the 46 expressions, ``rig.deltas`` (46, n, 3) their blendshapes.
@@ -47,6 +48,7 @@ class Avatar:
     """
 
     fit: FaceFit
+    parse: FaceParse
     face: AlignedFace
     rig: Rig
     eyes: Eyes
