@@ -12,7 +12,7 @@ from toongeo._read_only import read_only
 from toongeo.caricature.face_space import FaceSpace
 from toongeo.geometry import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
-from toongeo.render.camera import ScaledOrthographicCamera
+from toongeo.protocols import HeadCamera
 
 __all__ = ["CaricatureFit", "CaricatureReport"]
 
@@ -57,7 +57,8 @@ class CaricatureFit:
         Weights of rotation and of scale/shear.
     energy : tuple of float
         E_def (Eq. 6) after each P'-step, mm^2.
-    camera : ScaledOrthographicCamera
+    camera : HeadCamera
+        Scaled orthographic, but for an exaggerated face that had another.
     landmark_vertices : (68,) int64
         Vertices of the landmarks as this pose shows them.
     space : FaceSpace
@@ -67,7 +68,7 @@ class CaricatureFit:
     vertices: Floats
     w: Floats
     energy: tuple[float, ...]
-    camera: ScaledOrthographicCamera
+    camera: HeadCamera
     landmark_vertices: NDArray[np.int64]
     space: FaceSpace
     report: CaricatureReport
@@ -92,7 +93,7 @@ class CaricatureFit:
 
     def project(self, points: ArrayLike) -> Floats:
         """Points (k, 3), mm, model frame -> pixels (k, 2)."""
-        return self.camera.project(points)
+        return self.camera.project(np.asarray(points, np.float64))
 
     def region(self, name: str) -> NDArray[np.bool_]:
         """Mask (n,) of a named region of the model, such as ``"face"`` or ``"lips"``."""

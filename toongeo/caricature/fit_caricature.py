@@ -108,7 +108,7 @@ def fit_caricature(
     if start is not None and start.space is not space:
         raise ValueError("start: expected a fit of the same space, got one of another")
     solver = _Alternation(space, pixels, weight, CaricatureOptions() if options is None else options)
-    state = solver.first() if start is None else _State(start.w, start.camera, start.landmark_vertices)
+    state = solver.first() if start is None else _resumed(start)
     before = solver.coarse.vertices if start is None else start.vertices
     P, state, energies = solver.run(state, iterations, posed=start is None)
     if start is None:
@@ -133,6 +133,12 @@ class _State:
     w: Floats  # (2, l)
     camera: ScaledOrthographicCamera
     landmarks: NDArray[np.int64]  # (68,)
+
+
+def _resumed(start: CaricatureFit) -> _State:
+    if not isinstance(start.camera, ScaledOrthographicCamera):
+        raise ValueError(f"start: expected a scaled orthographic camera, got {type(start.camera).__name__}")
+    return _State(start.w, start.camera, start.landmark_vertices)
 
 
 class _Alternation:
