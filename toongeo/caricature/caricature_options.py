@@ -18,9 +18,10 @@ class CaricatureOptions:
     smoothness : float
         Weight of ``tr(r^T L^2 r)`` against ``tr(r^T L r)``, where ``r`` is what the landmarks add to the mesh of the
         weights and L the cotangent Laplacian. 0 is the P'-step of the paper, which leaves a spike at each landmark.
-    rim_weight : float
-        Weight of the lid and lip rims between the landmarks, whose displacement is interpolated, as a fraction of
-        the landmarks' weight; 0 leaves them free.
+    lip_weight, lid_weight : float
+        Weight of the rims of lips and lids between the landmarks, whose displacement is interpolated, as a fraction
+        of the landmarks' weight; 0 leaves them free. Lips touch, and cross where they are held loosely; lids are
+        apart, and crumple at their corners where they are held firmly.
     ridge : float
         Weight of ``|w|^2`` in the w-step, as a fraction of the mean diagonal entry of its Gauss-Newton matrix (of the
         scale/shear part). 0 is the paper's.
@@ -38,7 +39,8 @@ class CaricatureOptions:
     """
 
     smoothness: float = 100.0
-    rim_weight: float = 1e-4
+    lip_weight: float = 1e-3
+    lid_weight: float = 1e-5
     ridge: float = 0.1
     tolerance: float = 1e-2
     steps: int = 3

@@ -192,18 +192,16 @@ class _Alternation:
     def _mesh_step(self, shape: Floats, state: _State) -> Floats:
         """The P'-step (Eq. 15), with the rims of lids and lips between the landmarks."""
         vertices, first = np.unique(state.landmarks[self.seen], return_index=True)
-        rows, targets_px = self.space.rows(vertices), self.pixels[self.seen][first]
-        weights = np.full(len(rows), self.weight)
-        if self.options.rim_weight > 0:
-            missing_px = self.pixels - state.camera.project(shape[self.space.rows(state.landmarks)])
-            rims, shift_px = rim_anchors(self.space.model, missing_px)
-            between = ~np.isin(rims, vertices)
-            rim_rows = self.space.rows(rims[between])
-            rows = np.r_[rows, rim_rows]
-            targets_px = np.vstack([targets_px, state.camera.project(shape[rim_rows]) + shift_px[between]])
-            weights = np.r_[weights, np.full(len(rim_rows), self.options.rim_weight * self.weight)]
-        reference = self.space.space.reference
-        return reference + self._mesh.displacements(shape - reference, state.camera, rows, targets_px, weights)
+        camera, model = state.camera, self.space.model
+        missing_px = self.pixels - camera.project(shape[self.space.rows(state.landmarks)])
+        rims, shift_px = rim_anchors(model, missing_px)
+        fraction = np.where(model.region("lips")[rims], self.options.lip_weight, self.options.lid_weight)
+        used = (fraction > 0) & ~np.isin(rims, vertices)
+        rims, shift_px, fraction = self.space.rows(rims[used]), shift_px[used], fraction[used]
+        targets_px = np.vstack([self.pixels[self.seen][first], camera.project(shape[rims]) + shift_px])
+        weights = self.weight * np.r_[np.ones(len(vertices)), fraction]
+        reference, rows = self.space.space.reference, np.r_[self.space.rows(vertices), rims]
+        return reference + self._mesh.displacements(shape - reference, camera, rows, targets_px, weights)
 
 
 @lru_cache(maxsize=2)
