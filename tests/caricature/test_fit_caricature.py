@@ -200,3 +200,16 @@ def test_bad_input_is_refused(girl, face_space, fit, small):
         fit_caricature(None, girl, space=other, start=fit)
     with pytest.raises(ValueError, match="vertices: expected vertices of the space"):
         face_space.rows(np.flatnonzero(face_space.model.region("tongue")))
+
+
+def test_earlier_pictures_leave_no_trace(face_space, cartoon):
+    """The columns of the landmarks' system are kept; which were asked for before must not show."""
+    space = face_space.space
+    first, second = face_space.rows(face_space.model.landmarks[:40]), face_space.rows(face_space.model.landmarks[30:])
+    camera = ScaledOrthographicCamera.look(size=700)
+    u0, q, weights = np.zeros_like(space.reference), np.full((38, 2), 300.0), np.ones(38)
+    fresh, used = LandmarkMesh(space, 1.0), LandmarkMesh(space, 1.0)
+    used.displacements(u0, camera, first, np.full((40, 2), 200.0), np.ones(40))
+    np.testing.assert_array_equal(
+        used.displacements(u0, camera, second, q, weights), fresh.displacements(u0, camera, second, q, weights)
+    )

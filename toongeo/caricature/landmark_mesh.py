@@ -81,12 +81,14 @@ class LandmarkMesh:
 
     def _pulls(self, vertices: NDArray[np.int64]) -> Floats:
         """``K^-1 S^T`` (n, k); each column is solved for when first asked for."""
-        new = [v for v in vertices.tolist() if v not in self._known]
-        if new:
-            unit = np.zeros((len(self._space.reference), len(new)))
-            unit[new, np.arange(len(new))] = 1.0
-            columns = np.zeros(unit.shape)
-            columns[self._free] = solve(self._factor, unit[self._free])
+        for v in vertices.tolist():
+            if v in self._known:
+                continue
+            # One by one: the digits of a column would otherwise depend on its company, that is on earlier calls.
+            unit = np.zeros((len(self._space.reference), 1))
+            unit[v] = 1.0
+            column = np.zeros(len(unit))
+            column[self._free] = solve(self._factor, unit[self._free])[:, 0]
             # A load on a pinned vertex is taken by the pin: its column is zero, and the free motion makes up for it.
-            self._known.update(zip(new, np.ascontiguousarray(columns.T), strict=True))
+            self._known[v] = column
         return np.stack([self._known[v] for v in vertices.tolist()], axis=1)
