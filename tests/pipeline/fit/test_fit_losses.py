@@ -62,7 +62,7 @@ def direction(unknowns, block):
 def test_taylor_slope(landmark_loss, unknowns, x, taylor_slope, block, term):
     prior = PriorLoss(unknowns, 1.3, 4.0, mean(unknowns))
     nod = NodLoss(unknowns, landmark_loss.rotation0, 12.0)
-    total = TotalLoss(landmark_loss, prior, nod, 0.7, 1e-3)
+    total = TotalLoss(landmark_loss, prior, nod, 0.7, 1e-3, 2e-3)
     loss = {"landmark": landmark_loss, "prior": prior, "nod": nod, "total": total}[term]
     d = direction(unknowns, block)
     pose = block in ("rotation", "log_scale", "translation")

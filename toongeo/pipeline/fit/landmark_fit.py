@@ -32,6 +32,7 @@ __all__ = ["LandmarkFit"]
 
 Floats = NDArray[np.float64]
 
+_NOD_WEIGHT = 4e-6  # of the prior on the pitch, which grows as w_r does
 _GROWTH = 4.0  # a loose first pass bends the face to most of what is odd: the misfit it leaves is a small part
 _ROUGH = 2.0  # times the expected misfit: what a single landmark may miss by without being odd at all
 _DISTRUST = 0.1  # a point with less robust weight is called an outlier
@@ -194,7 +195,8 @@ class LandmarkFit:
             principal=self.frame.from_pixels(self.principal_point),
         )
         nod = NodLoss(self.unknowns, self.frame.rotation0, self.options.nod_deviation)
-        return TotalLoss(landmark, self.prior, nod, self.options.landmark_weight, prior_weight)
+        nod_weight = prior_weight / self.options.prior_weight * _NOD_WEIGHT
+        return TotalLoss(landmark, self.prior, nod, self.options.landmark_weight, prior_weight, nod_weight)
 
     def _trusted(self, residuals: Floats) -> Floats:
         """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""

@@ -18,16 +18,14 @@ __all__ = ["evened_weights", "landmark_weights"]
 Floats = NDArray[np.float64]
 
 _CLICK_MM = 1.0  # standard deviation of a click, on the head
-# An inner point is guessed, not seen, where the surface of the mean face turns away from the viewer: its weight falls
-# while the cosine goes from the first number to the second, down to the third.
-_TURNING, _TURNED, _GUESSED = 0.1, -0.3, 0.1
+_GUESSED = 0.1  # weight of a jaw point whose whole line is out of sight: the face hides it
 
 
 def landmark_weights(points: Floats, model: MorphableModel, rotation: Floats, options: FitOptions) -> Floats:
     """Weights (68, 2, 2) of Eq. 4: the precision of each point as a pose shows it, relative to an inner point.
 
-    The covariance of a point in the picture is that of its place on the head, projected, and that of a click. Points
-    that are turned away weigh less, and jaw points as the options say.
+    The covariance of a point in the picture is that of its place on the head, projected, and that of a click. Jaw
+    points weigh as the options say, and a tenth of that where their contour line is turned away from the viewer.
 
     Parameters
     ----------
@@ -43,10 +41,8 @@ def landmark_weights(points: Floats, model: MorphableModel, rotation: Floats, op
         spread = rotation[:2] @ model.prior.landmark_covariance @ rotation[:2].T + _CLICK_MM**2 * np.eye(2)
         precision = np.linalg.inv(spread)
         weights = precision / (np.trace(precision[INNER], axis1=1, axis2=2).mean() / 2)
-    towards = _landmark_normals(model) @ rotation[2]
-    seen = np.clip((towards - _TURNED) / (_TURNING - _TURNED), _GUESSED, 1.0)
-    weights *= seen[:, None, None]
-    weights[PARTS["jaw"]] = options.jaw_weight * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
+    seen = np.where(_front_normals(model) @ rotation[2] > 0, 1.0, _GUESSED)[:, None, None]
+    weights[PARTS["jaw"]] = options.jaw_weight * seen * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
     return weights
 
 
@@ -68,5 +64,6 @@ def evened_weights(weights: Floats, shared: float, unit: float) -> Floats:
 
 
 @lru_cache(maxsize=4)
-def _landmark_normals(model: MorphableModel) -> Floats:
-    return vertex_normals(model.mean, model.faces)[model.landmarks]
+def _front_normals(model: MorphableModel) -> Floats:
+    """Normals (17, 3) of the mean face where the contour lines begin."""
+    return vertex_normals(model.mean, model.faces)[[line[0] for line in model.contour_lines]]

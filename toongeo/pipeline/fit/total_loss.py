@@ -18,27 +18,29 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class TotalLoss:
-    """Eq. 3 of Pan et al. 2024 without the photometric term: ``L = w_l L_lan + w_r (L_reg + L_nod)``."""
+    """Eq. 3 of Pan et al. 2024 without the photometric term: ``L = w_l L_lan + w_r L_reg + w_n L_nod``."""
 
     landmark: LandmarkLoss
     prior: PriorLoss
     nod: NodLoss
     landmark_weight: float
     prior_weight: float
+    nod_weight: float
 
     def __call__(self, x: Floats) -> tuple[float, Floats]:
         """Value and gradient (n,) at ``x`` (n,)."""
         landmark, landmark_slope = self.landmark(x)
         prior, prior_slope = self.prior(x)
         nod, nod_slope = self.nod(x)
-        value = self.landmark_weight * landmark + self.prior_weight * (prior + nod)
-        return value, self.landmark_weight * landmark_slope + self.prior_weight * (prior_slope + nod_slope)
+        value = self.landmark_weight * landmark + self.prior_weight * prior + self.nod_weight * nod
+        slope = self.landmark_weight * landmark_slope + self.prior_weight * prior_slope + self.nod_weight * nod_slope
+        return value, slope
 
     def prior_value(self, x: Floats) -> float:
-        """``L_reg + L_nod`` at ``x`` (n,)."""
-        return self.prior(x)[0] + self.nod(x)[0]
+        """``L_reg + w_n / w_r L_nod`` at ``x`` (n,)."""
+        return self.prior(x)[0] + self.nod_weight / self.prior_weight * self.nod(x)[0]
 
     def curvature(self, x: Floats) -> Floats:
         """Diagonal (n,) of the Gauss-Newton matrix: what the variables are scaled by."""
-        prior = self.prior.curvature(x) + self.nod.curvature(x)
-        return self.landmark_weight * self.landmark.curvature(x) + self.prior_weight * prior
+        landmark = self.landmark_weight * self.landmark.curvature(x)
+        return landmark + self.prior_weight * self.prior.curvature(x) + self.nod_weight * self.nod.curvature(x)
