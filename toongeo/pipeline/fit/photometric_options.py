@@ -8,7 +8,7 @@ from toongeo.pipeline.fit.check_positive import check_positive
 
 __all__ = ["PhotometricOptions"]
 
-_COUNTED = ("passes", "max_evaluations", "samples")
+_COUNTED = ("passes", "steps", "max_evaluations", "samples")
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,12 @@ class PhotometricOptions:
         Pixel of the resampled picture. 0.6 makes a face about 320 px high.
     blur : float, mm
         Standard deviation of the Gaussian that the picture is smoothed by: about the distance of the samples.
+    steps : int
+        Gauss-Newton steps in a pass.
     tolerance : float
-        Relative change of the loss at which a pass stops.
+        Relative change of the quadratic model of the loss at which the optimizer stops.
     max_evaluations : int
-        Of the loss, in one pass.
+        Of that model, in one step.
 
     Raises
     ------
@@ -57,8 +59,9 @@ class PhotometricOptions:
     samples: int = 2500
     resolution: float = 0.6
     blur: float = 1.0
-    tolerance: float = 1e-5
-    max_evaluations: int = 15
+    steps: int = 1
+    tolerance: float = 1e-7
+    max_evaluations: int = 300
 
     def __post_init__(self) -> None:
         for field in fields(self):

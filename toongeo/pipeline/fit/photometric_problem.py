@@ -14,9 +14,9 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.confidence import skin_likelihood
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.gauss_newton_step import gauss_newton_step
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
 from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty
-from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 from toongeo.pipeline.fit.photometric_samples import PhotometricSamples, photometric_samples
@@ -128,38 +128,38 @@ class PhotometricProblem:
         z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
         first = frozen = self.frozen(z)
         penalty = self.loss(z, frozen).penalty
-        ambient = self._rms(frozen, *self._lit(frozen, z, _AMBIENT_ONLY * penalty))
-        before = self._rms(frozen, *self._lit(frozen, z, penalty))
-        scale, evaluations = None, 0
+        observed = frozen.observe(z)
+        ambient = self._rms(frozen, _lit(frozen, z, observed, _AMBIENT_ONLY * penalty), observed)
+        before = self._rms(frozen, _lit(frozen, z, observed, penalty), observed)
+        evaluations = 0
         for _ in range(self.options.passes):
             loss = self.loss(z, frozen)
-            scale = 1 / np.sqrt(loss.curvature(z)) if scale is None else scale
-            minimum = nlopt_minimize(
-                loss,
-                z,
-                bounds=bounds,
-                scale=scale,
-                algorithm=_ALGORITHM,
-                tolerance=self.options.tolerance,
-                max_evaluations=self.options.max_evaluations,
-            )
-            z, evaluations = minimum.x, evaluations + minimum.evaluations
+            for _ in range(self.options.steps):
+                step = gauss_newton_step(
+                    loss,
+                    z,
+                    bounds=bounds,
+                    algorithm=_ALGORITHM,
+                    tolerance=self.options.tolerance,
+                    max_evaluations=self.options.max_evaluations,
+                )
+                z, evaluations = step.z, evaluations + step.evaluations
             frozen = self.frozen(z)
         x, _ = loss.full(z)
         after = self._rms(frozen, x, frozen.observe(x))
         if after > before:  # nothing was explained: keep the face of the landmarks, in its best light
             z, frozen, loss, after = self.z0, first, self.loss(self.z0, first), before
-            x, _ = self._lit(first, z, penalty)
+            x = _lit(first, z, observed, penalty)
         return PhotometricSolution(
             z=z,
             light=x[loss.photometric.light].reshape(9, 3),
             landmark_vertices=self._placed(z),
             landmark_loss=loss.geometry.landmark(z[:n])[0],
             prior_loss=loss.geometry.prior_value(z[:n]),
-            loss=loss(z)[0],
+            loss=loss(z),
             residuals=(ambient, before, after),
             confident_fraction=float(frozen.weights.sum()),
-            status=minimum.status,
+            status=step.status,
             passes=self.options.passes,
             evaluations=evaluations,
         )
@@ -169,12 +169,11 @@ class PhotometricProblem:
 
         Weights and slopes depend on the light, and the light on them, so they are found in turn.
         """
-        photometric = frozen
-        ridge = light_penalty(frozen, frozen.observe(z), self.options.light_weight)
+        photometric, observed = frozen, frozen.observe(z)
+        ridge = light_penalty(frozen, observed, self.options.light_weight)
         penalty = ridge
         for _ in range(_REWEIGHTINGS):
-            x, observed = self._lit(photometric, z, penalty)
-            rendered = photometric.rendered(x, observed)
+            rendered = photometric.rendered(_lit(photometric, z, observed, penalty), observed)
             slopes = _srgb_slope((rendered + observed.seen) / 2)
             size = np.linalg.norm(slopes * (rendered - observed.seen), axis=1)
             noise = max(_weighted_median(size, frozen.weights) / _MEDIAN_OF_NORM, self.options.noise)
@@ -221,10 +220,6 @@ class PhotometricProblem:
             weights=weights[rows],
         )
 
-    def _lit(self, loss: PhotometricLoss, z: Floats, penalty: Floats) -> tuple[Floats, Observation]:
-        observed = loss.observe(z)
-        return np.concatenate([z, best_light(loss, observed, penalty).ravel()]), observed
-
     def _rms(self, loss: PhotometricLoss, x: Floats, observed: Observation) -> float:
         """Root mean square difference in sRGB inside the confidence map, over samples and channels."""
         shown = linear_to_srgb(np.clip(loss.rendered(x, observed), 0.0, 1.0))
@@ -240,6 +235,10 @@ class PhotometricProblem:
         # Counted from -1: of a pair at rest neither is let go.
         upper = without_opposites(upper, 1 + self.start, self.landmarks.opposites)
         return np.concatenate([lower, -albedo]), np.concatenate([upper, albedo])
+
+
+def _lit(loss: PhotometricLoss, z: Floats, observed: Observation, penalty: Floats) -> Floats:
+    return np.concatenate([z, best_light(loss, observed, penalty).ravel()])
 
 
 def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:

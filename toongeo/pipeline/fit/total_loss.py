@@ -42,3 +42,8 @@ class TotalLoss:
         """Diagonal (n,) of the Gauss-Newton matrix: what the variables are scaled by."""
         prior = self.prior.curvature(x) + self.nod.curvature(x)
         return self.landmark_weight * self.landmark.curvature(x) + self.prior_weight * prior
+
+    def matrix(self, x: Floats) -> Floats:
+        """The Gauss-Newton matrix (n, n)."""
+        prior = np.diag(self.prior.curvature(x)) + self.nod.matrix(x)
+        return self.landmark_weight * self.landmark.matrix(x) + self.prior_weight * prior
