@@ -19,8 +19,8 @@ class PhotometricOptions:
     ----------
     independent_samples : float
         How many independent observations a picture is worth that the model explains to within ``noise``: the N of
-        ``w_p = w_r N (noise^2 / v) / v`` in Eq. 3 (Pan et al. 2024), where the variance v of the residuals is
-        estimated in each pass. So a picture that the model explains well counts much, a drawing little. N is far
+        ``w_p = w_r N (noise / s) / s^2`` in Eq. 3 (Pan et al. 2024), where the standard deviation s of the
+        residuals is estimated in each pass. So a picture that the model explains well counts much, a drawing little. N is far
         below the number of samples, because the errors of a rendering are alike over whole regions.
     noise : float
         Least standard deviation of a residual, sRGB (0..1), for each channel.
@@ -51,14 +51,14 @@ class PhotometricOptions:
         If one of them is not a finite positive number.
     """
 
-    independent_samples: float = 3.0
+    independent_samples: float = 20.0
     noise: float = 0.003
-    albedo_weight: float = 1e-5
+    albedo_weight: float = 5e-6
     light_weight: float = 1e-4
     passes: int = 4
-    samples: int = 2500
+    samples: int = 1500
     resolution: float = 0.6
-    blur: float = 1.0
+    blur: float = 0.6
     steps: int = 1
     tolerance: float = 1e-7
     max_evaluations: int = 300

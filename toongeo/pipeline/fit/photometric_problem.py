@@ -196,7 +196,7 @@ class PhotometricProblem:
         What the model does not explain is alike over whole regions, so a larger error also means fewer independent
         observations; their number falls as the variance rises.
         """
-        return self.options.independent_samples * (self.options.noise / noise) ** 2 / noise**2
+        return self.options.independent_samples * self.options.noise / noise**3
 
     def frozen(self, z: Floats) -> PhotometricLoss:
         """The photometric loss with visibility and normals at ``z``, without robust weights."""
