@@ -39,7 +39,7 @@ _OUTLYING, _OUTLIER = 4.0, 0.05  # scale of the robust loss: standard deviations
 _AMBIENT_ONLY = 1e9  # ridge that leaves no light but the ambient one
 _DARKEST = 0.01  # linear light below which sRGB is taken for as steep as here
 _BESIDE = 2.5  # mm from what is not believed within which a pixel may be mixed with it
-_SKIN = ("cheek_left", "cheek_right", "nose", "forehead")  # where skin is looked for first
+_SKIN = ("cheek_left", "cheek_right", "nose")  # where skin is looked for: a fringe may cover the forehead
 
 
 @dataclass(frozen=True, eq=False)
