@@ -15,7 +15,8 @@ _FLOOR = 0.02  # linear light below which colours are noise
 _SPREADS = np.array([0.6, 0.03, 0.03])  # least spread of skin: log of the luminance, and chromaticity
 _REACH = 2.5  # spreads at which a pixel counts half
 _CONCENTRATIONS = 10
-_OF_HALF = 2.46  # covariance of a normal variable in 3-D over that of the half around its mean
+_COMMON = 0.6  # of the points, at least, are taken to be skin
+_OF_COMMON = 2.05  # covariance of a normal variable in 3-D over that of this part around its mean
 
 
 def skin_likelihood(plane: PicturePlane, core: Floats) -> NDArray[np.float32]:
@@ -34,14 +35,14 @@ def skin_likelihood(plane: PicturePlane, core: Floats) -> NDArray[np.float32]:
     known = core[plane.trust(core) > 0.5]
     if not len(known):
         return np.ones(plane.confidence.shape, np.float32)
-    centre, covariance = _common_half(_features(plane.sample(known)[0]))
+    centre, covariance = _common(_features(plane.sample(known)[0]))
     away = _features(plane.light) - centre
     distance2 = (away @ np.linalg.inv(covariance) * away).sum(axis=-1) / _REACH**2
     return (1 / (1 + distance2**4)).astype(np.float32)
 
 
-def _common_half(features: Floats) -> tuple[Floats, Floats]:
-    """Mean (3,) and covariance (3, 3) of the half of the points (k, 3) that are most alike (P. Rousseeuw, K. Van
+def _common(features: Floats) -> tuple[Floats, Floats]:
+    """Mean (3,) and covariance (3, 3) of those of the points (k, 3) that are most alike (P. Rousseeuw, K. Van
     Driessen, "A fast algorithm for the minimum covariance determinant estimator", Technometrics 1999), as of a normal
     distribution.
     """
@@ -50,10 +51,10 @@ def _common_half(features: Floats) -> tuple[Floats, Floats]:
     for _ in range(_CONCENTRATIONS):
         away = features - centre
         distance2 = (away @ np.linalg.inv(covariance) * away).sum(axis=1)
-        half = features[distance2 <= np.median(distance2)]
-        centre = half.mean(axis=0)
-        away = half - centre
-        covariance = _OF_HALF * (away.T @ away) / len(half) + np.diag(_SPREADS**2)
+        common = features[distance2 <= np.quantile(distance2, _COMMON)]
+        centre = common.mean(axis=0)
+        away = common - centre
+        covariance = _OF_COMMON * (away.T @ away) / len(common) + np.diag(_SPREADS**2)
     return centre, covariance
 
 
