@@ -54,7 +54,7 @@ class PhotometricOptions:
     independent_samples: float = 20.0
     noise: float = 0.003
     albedo_weight: float = 5e-6
-    light_weight: float = 1e-4
+    light_weight: float = 1e-5
     passes: int = 4
     samples: int = 1500
     resolution: float = 0.6
