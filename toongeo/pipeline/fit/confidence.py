@@ -23,14 +23,14 @@ def skin_likelihood(plane: PicturePlane, core: Floats) -> NDArray[np.float32]:
     """Likelihood (h, w) in [0, 1] that a pixel shows the same skin as the middle of the face.
 
     Colour and brightness of the skin are learned from the picture itself, so that drawings with green skin, grey
-    photographs and all complexions are alike: the commonest colour of the points in ``core``, and the deviation of
-    those around it. Hair, beards, glasses, eyes and highlights fall outside.
+    photographs and all complexions are alike: mean and covariance of the greater part of the points in ``core``.
+    What light and shadow change together counts as one. Hair, beards, glasses, eyes and highlights fall outside.
 
     Parameters
     ----------
     plane : PicturePlane
     core : (k, 2) float, mm
-        Canonical points on cheeks, nose and forehead that are seen.
+        Canonical points on cheeks and nose that are seen.
     """
     known = core[plane.trust(core) > 0.5]
     if not len(known):
@@ -41,7 +41,7 @@ def skin_likelihood(plane: PicturePlane, core: Floats) -> NDArray[np.float32]:
     return (1 / (1 + distance2**4)).astype(np.float32)
 
 
-def _common(features: Floats) -> tuple[Floats, Floats]:
+def _common(features: NDArray[np.floating]) -> tuple[Floats, Floats]:
     """Mean (3,) and covariance (3, 3) of those of the points (k, 3) that are most alike (P. Rousseeuw, K. Van
     Driessen, "A fast algorithm for the minimum covariance determinant estimator", Technometrics 1999), as of a normal
     distribution.

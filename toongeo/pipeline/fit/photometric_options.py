@@ -20,8 +20,8 @@ class PhotometricOptions:
     independent_samples : float
         How many independent observations a picture is worth that the model explains to within ``noise``: the N of
         ``w_p = w_r N (noise / s) / s^2`` in Eq. 3 (Pan et al. 2024), where the standard deviation s of the
-        residuals is estimated in each pass. So a picture that the model explains well counts much, a drawing little. N is far
-        below the number of samples, because the errors of a rendering are alike over whole regions.
+        residuals is estimated in each pass. So a picture that the model explains well counts much, a drawing
+        little. N is far below the number of samples, because the errors of a rendering are alike over whole regions.
     noise : float
         Least standard deviation of a residual, sRGB (0..1), for each channel.
     albedo_weight : float

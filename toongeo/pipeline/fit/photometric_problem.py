@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from toongeo.geometry.vertex_normals import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
@@ -20,13 +19,15 @@ from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light
 from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 from toongeo.pipeline.fit.photometric_samples import PhotometricSamples, photometric_samples
+from toongeo.pipeline.fit.photometric_solution import PhotometricSolution
 from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
 from toongeo.pipeline.fit.solution import Placement
+from toongeo.pipeline.fit.unknowns_of import unknowns_of
 from toongeo.pipeline.fit.visible_samples import visible_samples
 from toongeo.pipeline.fit.without_opposites import without_opposites
 from toongeo.render.srgb import linear_to_srgb
 
-__all__ = ["PhotometricProblem", "PhotometricSolution"]
+__all__ = ["PhotometricProblem"]
 
 Floats = NDArray[np.float64]
 
@@ -40,23 +41,6 @@ _AMBIENT_ONLY = 1e9  # ridge that leaves no light but the ambient one
 _DARKEST = 0.01  # linear light below which sRGB is taken for as steep as here
 _BESIDE = 2.5  # mm from what is not believed within which a pixel may be mixed with it
 _SKIN = ("cheek_left", "cheek_right", "nose")  # where skin is looked for: a fringe may cover the forehead
-
-
-@dataclass(frozen=True, eq=False)
-class PhotometricSolution:
-    """Geometry and albedo ``z`` and light (9, 3) at the minimum, and how it was reached."""
-
-    z: Floats
-    light: Floats
-    landmark_vertices: NDArray[np.int64]
-    landmark_loss: float
-    prior_loss: float
-    loss: float
-    residuals: tuple[float, float, float]
-    confident_fraction: float
-    status: str
-    passes: int
-    evaluations: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +85,7 @@ class PhotometricProblem:
         """The problem for a picture, a landmark fit, its landmarks (68, 2) px and a mask (H, W)."""
         landmarks = LandmarkFit.of(fit.model, pixels, fit_options)
         samples = photometric_samples(fit.model, options.samples)
-        start = _unknowns_of(fit, landmarks)
+        start = unknowns_of(fit, landmarks)
         face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))
         plane = picture_plane(img, mask, landmarks.frame, face, step=options.resolution, blur=options.blur)
         weight = fit.report.prior_weight
@@ -116,7 +100,7 @@ class PhotometricProblem:
         skin = np.isin(frozen.samples.vertices, _skin_vertices(fit.model))
         points = frozen.posed(problem.z0)[skin, :2] + start[landmarks.unknowns.translation]
         likelihood = skin_likelihood(plane, points) * plane.confidence
-        return replace(problem, plane=replace(plane, confidence=likelihood))
+        return replace(problem, plane=_shrunk(replace(plane, confidence=likelihood)))
 
     @property
     def z0(self) -> Floats:
@@ -124,7 +108,7 @@ class PhotometricProblem:
         return np.concatenate([self.start, np.zeros(self.samples.albedo.shape[1])])
 
     def solve(self) -> PhotometricSolution:
-        """Freeze, minimise, and again, as often as the options say."""
+        """Freeze, step, and again, as often as the options say."""
         z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
         first = frozen = self.frozen(z)
         penalty = self.loss(z, frozen).penalty
@@ -199,7 +183,7 @@ class PhotometricProblem:
         return self.options.independent_samples * self.options.noise / noise**3
 
     def frozen(self, z: Floats) -> PhotometricLoss:
-        """The photometric loss with visibility and normals at ``z``, without robust weights."""
+        """The photometric loss with visibility at ``z``, without robust weights."""
         u, frame, samples = self.landmarks.unknowns, self.landmarks.frame, self.samples
         V = self.model.vertices(z[u.identity], z[u.expression])
         R = frame.rotation(z[: u.size], u)
@@ -239,20 +223,6 @@ class PhotometricProblem:
 
 def _lit(loss: PhotometricLoss, z: Floats, observed: Observation, penalty: Floats) -> Floats:
     return np.concatenate([z, best_light(loss, observed, penalty).ravel()])
-
-
-def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:
-    """The vector of a fit in the frame of its landmark problem; inverse of `CanonicalFrame.camera`."""
-    u, frame = landmarks.unknowns, landmarks.frame
-    x = np.zeros(u.size)
-    x[u.identity], x[u.expression] = fit.identity, fit.expression
-    origin = np.zeros((1, 3))
-    rotation = (fit.camera.view(np.eye(3)) - fit.camera.view(origin)).T
-    scale = np.sqrt((fit.camera.jacobian(origin) ** 2).sum() / 2)  # |s P R|^2 = 2 s^2
-    x[u.rotation] = Rotation.from_matrix(frame.roll.T @ rotation @ frame.rotation0.T).as_rotvec()
-    x[u.log_scale] = np.log(scale / frame.scale)
-    x[u.translation] = frame.from_pixels(fit.camera.project(origin))[0]
-    return x
 
 
 def _skin_vertices(model: MorphableModel) -> NDArray[np.int64]:
