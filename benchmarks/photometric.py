@@ -24,7 +24,7 @@ from toongeo.pipeline.fit.landmark_basis import landmark_basis
 from toongeo.render import Surface, interpolate, irradiance, rasterize, render_mesh, sh_basis, srgb_to_linear
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
-SUBJECTS = range(20, 30)
+SUBJECTS = range(10)
 SIZE, NOISE = 512, 1.0  # px
 
 

@@ -53,7 +53,7 @@ class PhotometricOptions:
 
     independent_samples: float = 20.0
     noise: float = 0.003
-    albedo_weight: float = 5e-6
+    albedo_weight: float = 3e-6
     light_weight: float = 1e-5
     passes: int = 4
     samples: int = 1500
