@@ -3,12 +3,15 @@
 The stages, in the order in which :func:`make_avatar` calls them:
 
 1. :func:`read_image`, :func:`read_landmarks` - the picture and its points.
-2. :func:`fit_3dmm` - a morphable model posed and shaped by the landmarks.
-3. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.
-4. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face.
-5. :func:`fit_eyes`, :func:`close_lids`, :func:`clear_lids` - eyeballs, and lids that close over them.
-6. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
-7. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
+2. :func:`fit_3dmm` - a morphable model posed and shaped by the landmarks (and by the picture: :func:`photometric_fit`).
+3. :func:`parse_face`, :func:`snap_eyes` - the parts of the picture, and eye landmarks that lie on the lids.
+4. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.
+5. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face.
+6. :func:`fit_eyes`, :func:`close_lids`, :func:`clear_lids` - eyeballs, and lids that close over them.
+7. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
+8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
+
+For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space.
 
 Every name is imported when it is first used, so ``import toongeo`` itself costs almost nothing.
 """
@@ -54,6 +57,7 @@ __getattr__, __dir__, __all__ = attach(
         "AlignedFace": "pipeline",
         "diffuse_texture": "pipeline",
         "bake_texture": "pipeline",
+        "texture_coordinates": "pipeline",
         "bake_eyes": "pipeline",
         "build_rig": "pipeline",
         "Rig": "pipeline",
@@ -61,5 +65,13 @@ __getattr__, __dir__, __all__ = attach(
         "close_lids": "pipeline",
         "clear_lids": "pipeline",
         "Eyes": "pipeline",
+        "CaricatureFit": "caricature",
+        "CaricatureOptions": "caricature",
+        "DeformationSpace": "caricature",
+        "FaceSpace": "caricature",
+        "caricature_surface": "caricature",
+        "exaggerate": "caricature",
+        "face_space": "caricature",
+        "fit_caricature": "caricature",
     },
 )

@@ -1,6 +1,14 @@
 """The public names, for type checkers; ``__init__.py`` imports each when it is first used."""
 
 from toongeo.avatar import Avatar as Avatar
+from toongeo.caricature import CaricatureFit as CaricatureFit
+from toongeo.caricature import CaricatureOptions as CaricatureOptions
+from toongeo.caricature import DeformationSpace as DeformationSpace
+from toongeo.caricature import FaceSpace as FaceSpace
+from toongeo.caricature import caricature_surface as caricature_surface
+from toongeo.caricature import exaggerate as exaggerate
+from toongeo.caricature import face_space as face_space
+from toongeo.caricature import fit_caricature as fit_caricature
 from toongeo.geometry import DeformationTransfer as DeformationTransfer
 from toongeo.geometry import LaplacianAligner as LaplacianAligner
 from toongeo.geometry import deformation_transfer as deformation_transfer
@@ -34,6 +42,7 @@ from toongeo.pipeline import photometric_fit as photometric_fit
 from toongeo.pipeline import rendered_picture as rendered_picture
 from toongeo.pipeline import residual_map as residual_map
 from toongeo.pipeline import snap_eyes as snap_eyes
+from toongeo.pipeline import texture_coordinates as texture_coordinates
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
 from toongeo.protocols import Coefficients as Coefficients
 from toongeo.protocols import FaceLabel as FaceLabel

@@ -10,11 +10,12 @@ import numpy as np
 from toongeo._read_only import read_only
 from toongeo.avatar_report import AvatarReport
 from toongeo.avatar_scene import avatar_scene
-from toongeo.io import write_glb, write_obj, write_ply
+from toongeo.crop_faces import Crop
+from toongeo.io import SceneMesh, write_glb, write_obj, write_ply
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
 from toongeo.pipeline.rig.gaze import gaze_names
 from toongeo.pipeline.rig.weight_vector import weight_vector
-from toongeo.protocols import Camera
+from toongeo.protocols import Camera, FaceParse
 from toongeo.render import (
     ScaledOrthographicCamera,
     Surface,
@@ -37,6 +38,7 @@ class Avatar:
     Attributes
     ----------
     fit : FaceFit
+    parse : FaceParse
     face : AlignedFace
     rig : Rig
         ``rig.names`` are the 46 expressions, ``rig.deltas`` (46, n, 3) their blendshapes.
@@ -46,6 +48,7 @@ class Avatar:
     """
 
     fit: FaceFit
+    parse: FaceParse
     face: AlignedFace
     rig: Rig
     eyes: Eyes
@@ -144,13 +147,19 @@ class Avatar:
         # The texture holds the light of the picture already: a soft light shows the shape without shading it twice.
         return render_mesh(surfaces, camera, size, light=_soft_light())
 
-    def save(self, path: str | os.PathLike[str]) -> None:
+    def save(self, path: str | os.PathLike[str], *, crop: Crop = "head") -> None:
         """Write a file by its suffix: ``.glb``, ``.obj`` (with ``.mtl`` and ``.png`` beside it) or ``.ply``.
+
+        Parameters
+        ----------
+        path
+        crop : {"head", "bust", "face"}
+            "head" and "bust" are all that the template has; "face" is the front of the face with eyes and teeth.
 
         Raises
         ------
         ValueError
-            If the suffix is none of these.
+            If the suffix is none of these, or the crop is unknown.
         OSError
             If the file cannot be written; nothing half-written is left.
         """
@@ -158,7 +167,7 @@ class Avatar:
         writer = WRITERS.get(path.suffix.lower())
         if writer is None:
             raise ValueError(f"path: expected a name that ends in {', '.join(WRITERS)}, got {path}")
-        writer(path, self)
+        writer(path, self, crop)
 
     def _camera(self, size: int, yaw: float, pitch: float) -> ScaledOrthographicCamera:
         skin = self.rig.neutral[self.face.region("skin")]
@@ -185,36 +194,36 @@ def _soft_light() -> np.ndarray:
     return light * (front / irradiance(np.array([[0.0, 0.0, 1.0]]), light)[0])
 
 
-def _write_glb(path: Path, avatar: Avatar) -> None:
-    write_glb(path, avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture))
+def _write_glb(path: Path, avatar: Avatar, crop: Crop) -> None:
+    write_glb(path, avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture, crop=crop))
 
 
-def _write_obj(path: Path, avatar: Avatar) -> None:
-    write_obj(path, avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture))
+def _write_obj(path: Path, avatar: Avatar, crop: Crop) -> None:
+    write_obj(path, avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture, crop=crop))
 
 
-def _write_ply(path: Path, avatar: Avatar) -> None:
+def _write_ply(path: Path, avatar: Avatar, crop: Crop) -> None:
     """Neutral head and eyeballs in one mesh, with the texture's colours at the vertices."""
-    surfaces = avatar.surfaces()
-    offsets = np.cumsum([0, *(len(surface.vertices) for surface in surfaces[:-1])])
+    meshes = avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture, crop=crop).meshes
+    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     write_ply(
         path,
-        np.vstack([surface.vertices for surface in surfaces]),
-        np.vstack([surface.faces + offset for surface, offset in zip(surfaces, offsets, strict=True)]),
-        np.vstack([_vertex_colours(surface) for surface in surfaces]),
+        np.vstack([mesh.vertices for mesh in meshes]),
+        np.vstack([mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=True)]),
+        np.vstack([_vertex_colours(mesh) for mesh in meshes]),
     )
 
 
-def _vertex_colours(surface: Surface) -> np.ndarray:
+def _vertex_colours(mesh: SceneMesh) -> np.ndarray:
     """Colours (n, 3) uint8 that the texture has at the vertices."""
-    assert surface.texture is not None and surface.uv is not None and surface.uv_faces is not None
-    corner = np.zeros(len(surface.vertices), int)
-    corner[surface.faces.ravel()] = surface.uv_faces.ravel()  # at a seam, any of the corners
-    colours = sample_image(surface.texture, uv_to_px(surface.uv[corner], *surface.texture.shape[:2]))
+    assert mesh.texture is not None and mesh.uv is not None and mesh.uv_faces is not None
+    corner = np.zeros(len(mesh.vertices), int)
+    corner[mesh.faces.ravel()] = mesh.uv_faces.ravel()  # at a seam, any of the corners
+    colours = sample_image(mesh.texture, uv_to_px(mesh.uv[corner], *mesh.texture.shape[:2]))
     return np.rint(colours).astype(np.uint8)
 
 
-WRITERS: dict[str, Callable[[Path, Avatar], None]] = {
+WRITERS: dict[str, Callable[[Path, Avatar, Crop], None]] = {
     ".glb": _write_glb,
     ".obj": _write_obj,
     ".ply": _write_ply,

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from toongeo.crop_faces import Crop, crop_faces
+from toongeo.geometry import vertex_normals
 from toongeo.io import Scene, SceneAnimation, SceneMesh
 from toongeo.model import MorphableModel
 from toongeo.pipeline import Eyes, Rig
@@ -23,7 +25,7 @@ CLIP: tuple[tuple[float, dict[str, float]], ...] = (
 )
 
 
-def avatar_scene(rig: Rig, eyes: Eyes, model: MorphableModel, texture: np.ndarray) -> Scene:
+def avatar_scene(rig: Rig, eyes: Eyes, model: MorphableModel, texture: np.ndarray, *, crop: Crop = "head") -> Scene:
     """Head and eyeballs of an avatar, and a clip that shows that they move.
 
     The head has the expressions of the rig as targets; each eyeball is a mesh of its own about its centre and has the
@@ -36,20 +38,28 @@ def avatar_scene(rig: Rig, eyes: Eyes, model: MorphableModel, texture: np.ndarra
     model : MorphableModel
         For triangles and texture coordinates.
     texture : (size, size, 3) uint8 RGB
+    crop : {"head", "bust", "face"}
+        As of :func:`crop_faces`; vertices that no triangle needs are left out.
 
     Returns
     -------
     Scene
         Meshes ``head``, ``eye_left`` and ``eye_right``, which share one texture.
     """
+    kept = crop_faces(model, crop)
+    used, faces = np.unique(model.faces[kept], return_inverse=True)
+    used_uv, uv_faces = np.unique(model.uv_faces[kept], return_inverse=True)
+    whole = len(used) == len(rig.neutral)
     head = SceneMesh(
         name="head",
-        vertices=rig.neutral,
-        faces=model.faces,
-        uv=model.uv,
-        uv_faces=model.uv_faces,
+        vertices=rig.neutral[used],
+        faces=faces.reshape(-1, 3),
+        uv=model.uv[used_uv],
+        uv_faces=uv_faces.reshape(-1, 3),
+        # A cut-out face is shaded like the whole head: its own normals would turn at the cut.
+        normals=None if whole else vertex_normals(rig.neutral, model.faces)[used],
         texture=texture,
-        targets=rig.deltas,
+        targets=rig.deltas if whole else rig.deltas[:, used],
         target_names=rig.names,
     )
     meshes = (head, *(_eye_mesh(eyes, side, texture) for side in (0, 1)))

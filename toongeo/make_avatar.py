@@ -19,10 +19,14 @@ from toongeo.pipeline import (
     close_lids,
     fit_3dmm,
     fit_eyes,
+    parse_face,
+    photometric_fit,
+    snap_eyes,
 )
 from toongeo.pipeline.texture.bake_texture import check_size
+from toongeo.protocols import FaceParser
 
-STAGES = ("fit", "align", "rig", "eyes", "texture", "report")
+STAGES = ("fit", "parse", "align", "rig", "eyes", "texture", "report")
 
 
 def make_avatar(
@@ -30,6 +34,9 @@ def make_avatar(
     landmarks: np.ndarray,
     *,
     model: MorphableModel | None = None,
+    parser: FaceParser | None = None,
+    snap: bool = False,
+    photometric: bool = False,
     texture_size: int = 1024,
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
@@ -42,6 +49,13 @@ def make_avatar(
         iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
     model : MorphableModel, optional
         :func:`toongeo.default_model` unless another is given.
+    parser : FaceParser, optional
+        Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
+    snap : bool
+        Move eye landmarks to the lids that the parser found (:func:`toongeo.snap_eyes`), and fit again. For points of a
+        detector, which shrinks and shifts the eyes of drawings; points that were set by hand are better left alone.
+    photometric : bool
+        Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
     texture_size : int
         Side of the texture atlas in texels.
     progress : callable, optional
@@ -50,7 +64,7 @@ def make_avatar(
     Returns
     -------
     Avatar
-        What each stage gave is kept in it: ``fit``, ``face``, ``rig``, ``eyes``, ``texture``, ``report``.
+        What each stage gave is kept in it: ``fit``, ``parse``, ``face``, ``rig``, ``eyes``, ``texture``, ``report``.
 
     Raises
     ------
@@ -62,7 +76,17 @@ def make_avatar(
     clock = _Clock(progress)
 
     clock.start("fit")
-    fit = fit_3dmm(img, landmarks, model=model or default_model())
+    model = model or default_model()
+    fit = fit_3dmm(img, landmarks, model=model)
+    clock.start("parse")
+    parse = parse_face(img, landmarks, fit, parser=parser)
+    if snap:
+        clock.start("fit")
+        landmarks = snap_eyes(landmarks, parse)
+        fit = fit_3dmm(img, landmarks, model=model)
+    if photometric:
+        clock.start("fit")
+        fit = photometric_fit(img, fit, landmarks)
     clock.start("align")
     face = align_face(fit, landmarks)
     clock.start("rig")
@@ -71,7 +95,7 @@ def make_avatar(
     eyes = fit_eyes(face, rig)
     rig = clear_lids(face, rig, eyes)
     clock.start("texture")
-    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size))
+    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(
@@ -81,7 +105,7 @@ def make_avatar(
         seconds=clock.stop(),
         warnings=(*fit.report.warnings, *shape_warnings(face, eyes, quality)),
     )
-    return Avatar(fit=fit, face=face, rig=rig, eyes=eyes, texture=texture, report=report)
+    return Avatar(fit=fit, parse=parse, face=face, rig=rig, eyes=eyes, texture=texture, report=report)
 
 
 class _Clock:
@@ -101,6 +125,6 @@ class _Clock:
     def stop(self) -> dict[str, float]:
         if self._running:
             stage, started = self._running
-            self._seconds[stage] = time.perf_counter() - started
+            self._seconds[stage] = self._seconds.get(stage, 0.0) + time.perf_counter() - started
             self._running = None
         return self._seconds

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry._components import components
+from toongeo.geometry._loose_parts import loose_parts
+from toongeo.geometry._ring_rotations import ring_rotations
 from toongeo.geometry.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.uniform_laplacian import uniform_laplacian
 from toongeo.geometry.validate_mesh import validate_mesh
@@ -32,10 +35,21 @@ class AnchoredMesh:
     weight: NDArray[np.float64]  # (k,)
     anchors: NDArray[np.int64]  # (a,) the different ones, sorted
     group: NDArray[np.int64]  # (k,) given -> anchors
-    component: NDArray[np.int64]  # (a,) component number of each anchor
-    moving: NDArray[np.int64]  # vertices of the components that hold an anchor
+    parts: NDArray[np.int64]  # (n,) component number of each vertex
+    component: NDArray[np.int64]  # (a,) that of each anchor
+    moving: NDArray[np.int64]  # vertices of the components that hold an anchor, but for the fixed ones
     position: NDArray[np.int64]  # (a,) anchors as indices into `moving`
-    gram: sp.csr_matrix  # L^T L of the moving vertices
+    laplacian: sp.csr_matrix  # (n, n)
+    columns: sp.csr_matrix  # of the Laplacian, those of the moving vertices
+    gram: sp.csr_matrix  # their products
+    loose: list[tuple[NDArray[np.int64], NDArray[np.int64]]]  # parts that follow, each with what it follows
+
+    @cached_property
+    def graph(self) -> sp.csr_matrix:
+        """Adjacency (n, n): every edge has a weight in the Laplacian."""
+        A = sp.csr_matrix((self.laplacian != 0).astype(np.float64))
+        A.setdiag(0.0)
+        return A
 
     def pull(
         self, targets: NDArray[np.float64], rest: NDArray[np.float64]
@@ -62,20 +76,45 @@ class AnchoredMesh:
         return np.bincount(self.group, weight, minlength=len(self.anchors)).astype(np.float64)
 
 
-def anchored_mesh(V: ArrayLike, F: ArrayLike, anchors: ArrayLike, weight: ArrayLike, laplacian: str) -> AnchoredMesh:
+def anchored_mesh(
+    V: ArrayLike,
+    F: ArrayLike,
+    anchors: ArrayLike,
+    weight: ArrayLike,
+    laplacian: str,
+    fixed: ArrayLike | None = None,
+    loose: str = "stay",
+) -> AnchoredMesh:
     """Check everything and assemble ``L^T L`` on the components that hold an anchor."""
     V, F = validate_mesh(V, F)
     given = _checked_anchors(anchors, len(V))
     weights = _checked_weight(weight, len(given))
+    held = _checked_fixed(fixed, len(V), given)
+    if loose not in ("stay", "follow"):
+        raise ValueError(f"loose: expected 'stay' or 'follow', got {loose!r}")
     unique, group = np.unique(given, return_inverse=True)
     L = _unit_laplacian(V, F, laplacian)
     component = components(F, len(V))
     # A component without an anchor would make the system singular; left out, it stays exactly where it is.
-    moving = np.flatnonzero(np.isin(component, component[unique]))
-    L = L if len(moving) == len(V) else L[moving][:, moving]
-    position = np.searchsorted(moving, unique)
-    gram = sp.csr_matrix(L.T @ L)
-    return AnchoredMesh(V, given, weights, unique, group, component[unique], moving, position, gram)
+    anchored = np.isin(component, component[unique])
+    moving = np.flatnonzero(anchored & ~held)
+    columns = L if len(moving) == len(V) else sp.csr_matrix(L[:, moving])
+    held_parts = np.isin(component, component[np.flatnonzero(anchored | held)])
+    return AnchoredMesh(
+        V=V,
+        given=given,
+        weight=weights,
+        anchors=unique,
+        group=group,
+        parts=component,
+        component=component[unique],
+        moving=moving,
+        position=np.searchsorted(moving, unique),
+        laplacian=L,
+        columns=columns,
+        gram=sp.csr_matrix(columns.T @ columns),
+        loose=loose_parts(V, component, held_parts) if loose == "follow" and not held_parts.all() else [],
+    )
 
 
 def add_anchors(mesh: AnchoredMesh, weight: ArrayLike) -> sp.csr_matrix:
@@ -83,6 +122,20 @@ def add_anchors(mesh: AnchoredMesh, weight: ArrayLike) -> sp.csr_matrix:
     diagonal = np.zeros(len(mesh.moving))
     diagonal[mesh.position] = weight
     return sp.csr_matrix(mesh.gram + sp.diags_array(diagonal))
+
+
+def turned_pull(mesh: AnchoredMesh, rest: NDArray[np.float64], moved: NDArray[np.float64]) -> NDArray[np.float64]:
+    """``L^T (R L v - L v)`` (rows of `moving`), R the rotations from one shape to the other around each vertex."""
+    delta = mesh.laplacian @ rest
+    R = ring_rotations(mesh.graph, rest, moved)
+    return np.asarray(mesh.columns.T @ (np.einsum("nij,nj->ni", R, delta) - delta))
+
+
+def checked_rotations(rotations: int) -> int:
+    """The number of times that rotations are estimated."""
+    if isinstance(rotations, bool) or not isinstance(rotations, (int, np.integer)) or rotations < 0:
+        raise ValueError(f"rotations: expected an integer >= 0, got {rotations!r}")
+    return int(rotations)
 
 
 def checked_targets(targets: ArrayLike, k: int) -> NDArray[np.float64]:
@@ -123,9 +176,28 @@ def _checked_weight(weight: ArrayLike, k: int) -> NDArray[np.float64]:
     weight = np.asarray(weight, dtype=np.float64)
     if weight.shape not in ((), (k,)):
         raise ValueError(f"weight: expected a number or shape ({k},), got shape {weight.shape}")
-    bad = ~(np.isfinite(weight) & (weight >= 0))
+    bad = ~(weight >= 0)
     if bad.any():
-        raise ValueError(f"weight: expected finite numbers >= 0, got {weight[bad].flat[0]}")
+        raise ValueError(f"weight: expected numbers >= 0 (infinity: met exactly), got {weight[bad].flat[0]}")
     if not weight.any():
         raise ValueError("weight: expected an anchor with a weight above 0, got only zeros")
     return np.broadcast_to(weight, (k,)).copy()
+
+
+def _checked_fixed(fixed: ArrayLike | None, n: int, anchors: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Mask (n,) of the fixed vertices."""
+    held = np.zeros(n, bool)
+    if fixed is None:
+        return held
+    rows = np.asarray(fixed)
+    mask = rows.dtype == bool and rows.shape == (n,)
+    if not mask and not (rows.ndim == 1 and (rows.dtype.kind in "iu" or len(rows) == 0)):
+        raise ValueError(f"fixed: expected a mask ({n},) or vertex indices (k,), got {rows.dtype} {rows.shape}")
+    rows = np.flatnonzero(rows) if mask else rows.astype(np.int64)
+    outside = (rows < 0) | (rows >= n)
+    if outside.any():
+        raise ValueError(f"fixed: expected vertex indices in 0..{n - 1}, got {rows[outside.argmax()]}")
+    held[rows] = True
+    if held[anchors].any():
+        raise ValueError(f"fixed: expected no anchor among the fixed vertices, got {anchors[held[anchors].argmax()]}")
+    return held

@@ -20,6 +20,7 @@ from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
 from toongeo.pipeline.texture.bake_texture import bake_texture
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
+from toongeo.pipeline.texture.texture_coordinates import texture_coordinates
 
 __all__ = [
     "AlignedFace",
@@ -46,4 +47,5 @@ __all__ = [
     "rendered_picture",
     "residual_map",
     "snap_eyes",
+    "texture_coordinates",
 ]

@@ -5,7 +5,7 @@ import pytest
 
 from toongeo.pipeline.fit.decoupled_pose import decoupled_pose
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.landmark_fit import LandmarkFit
+from toongeo.pipeline.fit.landmark_problem import landmark_problem
 from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.render import ScaledOrthographicCamera
 
@@ -13,7 +13,7 @@ from toongeo.render import ScaledOrthographicCamera
 @pytest.fixture(scope="module", params=["orthographic", "perspective"])
 def problem(request, model, annotated, random_face):
     points = annotated(model, ScaledOrthographicCamera.look(yaw=25, pitch=-8, roll=5), *random_face(3))
-    return LandmarkFit.of(model, points, FitOptions(camera=request.param, robust=None))
+    return landmark_problem(model, points, FitOptions(camera=request.param, robust=None))
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from toongeo.pipeline.fit.contour import visible_landmarks
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
-from toongeo.pipeline.fit.landmark_fit import LandmarkFit
+from toongeo.pipeline.fit.landmark_problem import landmark_problem
 from toongeo.render import ScaledOrthographicCamera
 
 PICTURES = [
@@ -80,7 +80,7 @@ def test_a_stronger_prior_is_a_smaller_face_and_a_larger_error(model, face):
 
 def test_the_minimum_is_one(model, face):
     """No small step within the bounds lowers the loss of a pass."""
-    problem = LandmarkFit.of(model, face, FitOptions(tolerance=1e-14, max_passes=1))
+    problem = landmark_problem(model, face, FitOptions(tolerance=1e-14, max_passes=1))
     problem = replace(problem, opposites=problem.opposites[:0])  # which are parted after a pass
     fit = problem.solve("LD_LBFGS")
     placed = visible_landmarks(problem.basis, problem.start[:144], problem.frame.rotation0)

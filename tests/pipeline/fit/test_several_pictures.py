@@ -6,7 +6,7 @@ import pytest
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.joint_loss import JointLoss
-from toongeo.pipeline.fit.landmark_fit import LandmarkFit
+from toongeo.pipeline.fit.landmark_problem import landmark_problem
 from toongeo.render import ScaledOrthographicCamera
 
 CAMERAS = [ScaledOrthographicCamera.look(yaw=yaw, pitch=4, size=500 + 5 * yaw) for yaw in (-30, 0, 25)]
@@ -28,7 +28,7 @@ def person(model, annotated, random_face):
 
 @pytest.mark.parametrize("block", ["identity", "expression", "rotation", "everything"])
 def test_taylor_slope(model, person, taylor_slope, block):
-    problems = [LandmarkFit.of(model, points, FitOptions()) for points in person(0)[1]]
+    problems = [landmark_problem(model, points, FitOptions()) for points in person(0)[1]]
     losses = [p.loss(model.landmarks, 1e-4 * (k + 1)) for k, p in enumerate(problems)]
     loss, u = JointLoss(losses), problems[0].unknowns
     rng = np.random.default_rng(3)
@@ -42,7 +42,7 @@ def test_taylor_slope(model, person, taylor_slope, block):
 
 def test_the_prior_of_the_identity_counts_once(model, person):
     points = person(0)[1][0]
-    problem = LandmarkFit.of(model, points, FitOptions())
+    problem = landmark_problem(model, points, FitOptions())
     single = problem.loss(model.landmarks, 1e-4)
     x = 0.3 * np.random.default_rng(1).standard_normal(problem.unknowns.size)
     person_only = np.where(np.arange(len(x)) < problem.unknowns.n_identity, x, 0)

@@ -12,10 +12,15 @@ from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.io import landmark_array
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
+from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.rim_anchors import rim_anchors
+from toongeo.pipeline.align.straighten_teeth import straighten_teeth
+from toongeo.pipeline.align.symmetric_flow import symmetric_flow
+from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.protocols import Camera
 
+Laplacian = Literal["uniform", "cotangent"]
 RIM_WEIGHT = 0.01  # of the landmarks' weight: what lies between them is interpolated, not seen
 
 
@@ -71,14 +76,18 @@ def align_face(
     landmarks: np.ndarray,
     *,
     weight: float = 1e4,
-    laplacian: Literal["uniform", "cotangent"] = "uniform",
+    laplacian: Laplacian = "uniform",
+    depth: Literal["keep", "scaled"] = "scaled",
+    slide: bool = True,
+    flow: bool = True,
 ) -> AlignedFace:
     """Deform a fitted face so that its landmark vertices project onto the landmarks (Pan et al. 2024, section 3.2.2).
 
-    The anchors of :func:`laplacian_align` are the landmark vertices of the fit. Where a landmark asks for its vertex is
-    found in the picture; how far the vertex is from the camera is kept (Eq. 11). The rims of eyes and lips are anchored
-    between the landmarks too, more softly, with interpolated displacements. What lies behind an opening (sockets,
-    mouth cavity, teeth, tongue) is carried along with its rim.
+    First the face flows most of the way by the smooth motion that is most likely when left and right move alike
+    (:func:`~toongeo.pipeline.align.symmetric_flow.symmetric_flow`), which cannot fold it. Then the landmark vertices
+    become the anchors of :func:`laplacian_align`, which closes the rest of the way. The rims of eyes and lips are
+    anchored between the landmarks too, more softly, with interpolated displacements; upper and lower rims keep their
+    order. What lies behind an opening (sockets, mouth cavity) flows along; teeth and tongue do not bend.
 
     Parameters
     ----------
@@ -88,6 +97,16 @@ def align_face(
     weight : float
         Lambda of Eq. 10. The default holds the anchors to about a hundredth of a pixel.
     laplacian : {"uniform", "cotangent"}
+    depth : {"keep", "scaled"}
+        ``"keep"`` is Eq. 11: how far a vertex is from the camera does not change, so that a nose drawn twice as
+        big stays as flat as it was. With ``"scaled"`` the flow has depth too: what grows in the picture grows
+        towards the viewer as well, and what a turned face shows of one half happens to the other. Without the flow
+        the two are the same.
+    slide : bool
+        Whether jaw points slide along their contour lines to where the outline of the deformed head is.
+        ``landmark_vertices`` of the result tell where they ended.
+    flow : bool
+        False: Laplacian deformation alone, as in the paper, which folds lids and lips of strong exaggerations.
 
     Returns
     -------
@@ -97,25 +116,26 @@ def align_face(
     ------
     ValueError
         If landmarks have another shape, hold infinities or are all missing, the weight is negative or not finite, or
-        the Laplacian is unknown.
+        the Laplacian or the depth rule is unknown.
     """
     started = time.perf_counter()
     landmarks = landmark_array(landmarks)
+    if depth not in ("keep", "scaled"):
+        raise ValueError(f"depth: expected 'keep' or 'scaled', got {depth!r}")
+    V, at = fit.vertices, fit.landmark_vertices
+    if flow:
+        V, at = symmetric_flow(fit.model, fit.camera, V, at, landmarks, depth, slide)
+    elif slide:
+        at = visible_contour(fit.model, fit.camera, _anchored(fit, V, at, landmarks, weight, laplacian), at)
+    aligned = _anchored(fit, V, at, landmarks, weight, laplacian)
+    inner = straighten_teeth if flow else carry_inner_parts
+    aligned = inner(fit.model, fit.vertices, aligned)
     seen = np.isfinite(landmarks).all(1)
-    V = fit.vertices
-    anchors, targets_px = _merged(fit.landmark_vertices[seen], landmarks[seen])
-    rim, rim_shift_px = rim_anchors(fit.model, landmarks - fit.project(V[fit.landmark_vertices]))
-    weights = np.r_[np.full(len(anchors), weight), np.full(len(rim), RIM_WEIGHT * weight)]
-    anchors = np.r_[anchors, rim]
-    targets_px = np.vstack([targets_px, fit.project(V[rim]) + rim_shift_px])
-    targets = fit.camera.unproject(targets_px, fit.camera.depth(V[anchors]))  # Eq. 11
-    aligned = laplacian_align(V, fit.faces, anchors, targets, weight=weights, laplacian=laplacian)  # Eq. 10
-    aligned = carry_inner_parts(fit.model, V, aligned)
-    error = np.linalg.norm(fit.camera.project(aligned[fit.landmark_vertices[seen]]) - landmarks[seen], axis=1)
+    error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - landmarks[seen], axis=1)
     return AlignedFace(
         vertices=aligned,
         camera=fit.camera,
-        landmark_vertices=fit.landmark_vertices,
+        landmark_vertices=at,
         model=fit.model,
         fit=fit,
         report={
@@ -124,6 +144,22 @@ def align_face(
             "seconds": time.perf_counter() - started,
         },
     )
+
+
+def _anchored(
+    fit: FaceFit, V: np.ndarray, at: np.ndarray, landmarks: np.ndarray, weight: float, laplacian: Laplacian
+) -> np.ndarray:
+    """Vertices with those at the landmarks on them, and the rims between them taken along."""
+    seen = np.isfinite(landmarks).all(1)
+    anchors, targets_px = _merged(at[seen], landmarks[seen])
+    rim, rim_shift_px = rim_anchors(fit.model, landmarks - fit.project(V[at]))
+    given = np.arange(len(anchors) + len(rim)) < len(anchors)
+    anchors = np.r_[anchors, rim]
+    targets_px = np.vstack([targets_px, fit.project(V[rim]) + rim_shift_px])
+    targets_px, depth = keep_rims_apart(fit.model, fit.camera, V, anchors, targets_px, given)
+    targets = fit.camera.unproject(targets_px, depth)  # Eq. 11
+    weights = np.where(given, 1.0, RIM_WEIGHT) * weight
+    return laplacian_align(V, fit.faces, anchors, targets, weight=weights, laplacian=laplacian)  # Eq. 10
 
 
 def _merged(anchors: np.ndarray, targets_px: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

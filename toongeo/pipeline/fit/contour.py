@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from toongeo.model.ibug68 import PARTS
 from toongeo.pipeline.fit.landmark_basis import LandmarkBasis
 
-__all__ = ["jaw_weights", "visible_landmarks"]
+__all__ = ["jaw_weights", "landmarks_seen", "visible_landmarks"]
 
 
 def visible_landmarks(
@@ -30,8 +30,14 @@ def visible_landmarks(
     -------
     (68,) int64
     """
-    X = basis.positions(coefficients)
-    facing = _towards(X, basis.fan, rotation[2])[basis.line_rows]
+    return landmarks_seen(basis, basis.positions(coefficients), rotation)
+
+
+def landmarks_seen(
+    basis: LandmarkBasis, points: NDArray[np.float64], rotation: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """`visible_landmarks` of any shape, given by its points (k, 3) at the vertices of ``basis``."""
+    facing = _towards(points, basis.fan, rotation[2])[basis.line_rows]
     landmarks = basis.landmarks.copy()
     for k, line, start in zip(PARTS["jaw"], basis.lines, basis.line_starts, strict=True):
         turned = facing[start : start + len(line)] <= 0

@@ -20,6 +20,7 @@ from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
+from toongeo.pipeline.fit.landmark_problem import landmark_problem
 from toongeo.pipeline.fit.landmark_table import landmark_table, table_landmarks
 from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
 from toongeo.pipeline.fit.photometric_fit import photometric_fit
@@ -217,7 +218,7 @@ def _task(
     if not isinstance(guess, Coefficients):
         raise ValueError(f"regressor: expected one that returns Coefficients, got {type(guess).__name__}")
     with one_thread():
-        problem = LandmarkFit.of(model, pixels, options, guess, table, _centre(image_shape))
+        problem = landmark_problem(model, pixels, options, guess, table, _centre(image_shape))
     return _Task(model, problem, pixels, guess, warnings)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.pipeline.fit.rotation import left_jacobian, rotation_matrix
+from toongeo.pipeline.fit.rotation import rotated, turn_of
 from toongeo.pipeline.fit.unknowns import Unknowns
 
 __all__ = ["NodLoss"]
@@ -39,13 +39,13 @@ class NodLoss:
         """Value and gradient (n,) at ``x`` (n,)."""
         up, slope = self._up(x)
         gradient = np.zeros(self.unknowns.size)
-        gradient[self.unknowns.rotation] = 2 * self._weight * up * slope
+        gradient[self.unknowns.rotation] = np.multiply(2 * self._weight * up, slope)
         return self._weight * up**2, gradient
 
     def curvature(self, x: Floats) -> Floats:
         """Diagonal (n,) of the Gauss-Newton matrix."""
         curvature = np.zeros(self.unknowns.size)
-        curvature[self.unknowns.rotation] = 2 * self._weight * self._up(x)[1] ** 2
+        curvature[self.unknowns.rotation] = 2 * self._weight * np.square(self._up(x)[1])
         return curvature
 
     def matrix(self, x: Floats) -> Floats:
@@ -59,9 +59,8 @@ class NodLoss:
     def _weight(self) -> float:
         return float(1 / np.radians(self.deviation) ** 2)
 
-    def _up(self, x: Floats) -> tuple[float, Floats]:
-        """u, and its derivative (3,) by the rotation vector."""
+    def _up(self, x: Floats) -> tuple[float, tuple[float, float, float]]:
+        """u, and its derivative by the rotation vector."""
         w = x[self.unknowns.rotation]
-        up = rotation_matrix(w) @ self.rotation0[:, 1]
-        # A turn by the small vector d adds d x up.
-        return float(up[2]), np.array([up[1], -up[0], 0.0]) @ left_jacobian(w)
+        right, height, towards = rotated(w, self.rotation0[:, 1])
+        return towards, turn_of(w, (height, -right, 0.0))  # a turn by the small vector d adds d x up

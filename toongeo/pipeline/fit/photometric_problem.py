@@ -15,6 +15,7 @@ from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.gauss_newton_step import gauss_newton_step
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
+from toongeo.pipeline.fit.landmark_problem import landmark_problem
 from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty
 from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
@@ -83,7 +84,7 @@ class PhotometricProblem:
         fit_options: FitOptions,
     ) -> PhotometricProblem:
         """The problem for a picture, a landmark fit, its landmarks (68, 2) px and a mask (H, W)."""
-        landmarks = LandmarkFit.of(fit.model, pixels, fit_options)
+        landmarks = landmark_problem(fit.model, pixels, fit_options)
         samples = photometric_samples(fit.model, options.samples)
         start = unknowns_of(fit, landmarks)
         face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))

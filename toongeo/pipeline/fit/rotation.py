@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["left_jacobian", "rotation_matrix"]
+__all__ = ["left_jacobian", "rotated", "rotation_matrix", "turn_of"]
 
 _SMALL = 1e-3  # rad; below it the closed forms cancel and a Taylor polynomial is exact to 1e-16
 
@@ -29,6 +29,35 @@ def left_jacobian(w: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     _, b, c, square = _coefficients(w)
     return _combination(1 - c * square, b, c, w)
+
+
+def rotated(w: NDArray[np.float64], v: NDArray[np.float64]) -> tuple[float, float, float]:
+    """``rotation_matrix(w) @ v`` of one vector (3,), without the matrix.
+
+    Examples
+    --------
+    >>> np.round(rotated(np.array([0.0, 0.0, np.pi / 2]), np.array([1.0, 0.0, 0.0])), 12)
+    array([0., 1., 0.])
+    """
+    a, b, _, square = _coefficients(w)
+    return _combined(1 - b * square, a, b, w.tolist(), v.tolist())
+
+
+def turn_of(w: NDArray[np.float64], pull: tuple[float, float, float]) -> tuple[float, float, float]:
+    """``left_jacobian(w).T @ pull``: the derivative by w of what has the derivative ``pull`` by a turn after w."""
+    _, b, c, square = _coefficients(w)
+    return _combined(1 - c * square, -b, c, w.tolist(), list(pull))
+
+
+def _combined(i: float, a: float, b: float, w: list[float], v: list[float]) -> tuple[float, float, float]:
+    """``i v + a w x v + b w (w . v)`` in plain numbers."""
+    (x, y, z), (p, q, r) = w, v
+    along = b * (x * p + y * q + z * r)
+    return (
+        i * p + a * (y * r - z * q) + along * x,
+        i * q + a * (z * p - x * r) + along * y,
+        i * r + a * (x * q - y * p) + along * z,
+    )
 
 
 def _coefficients(w: NDArray[np.float64]) -> tuple[float, float, float, float]:

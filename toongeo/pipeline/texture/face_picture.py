@@ -6,22 +6,20 @@ import cv2
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS, PARTS
+from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.texture.skin_of import amid, resized, skin_of, skin_weight
+from toongeo.protocols import FaceLabel, FaceParse
 from toongeo.render import Fragments, rasterize
 
 MAX_SIDE = 1024  # px; a larger crop is reduced, which also filters it before it is sampled
-SPREAD = (
-    7.0,
-    13.0,
-)  # CIELAB units: least and largest distance from the skin's colour that still counts as skin
+RIM = 0.012  # of the face's width: by how much the silhouette is eroded
+FEATHER = 0.04  # of the face's width: over this distance from the rim of the skin its trust grows to 1
 FRONTAL = 0.2  # cosine to the viewing direction below which a surface is too oblique to be trusted
 # Upper and lower rim of each opening.
 EYE_RIGHT, EYE_LEFT = ((LID_RIMS[f"lid_upper_{side}"], LID_RIMS[f"lid_lower_{side}"]) for side in ("right", "left"))
 MOUTH = LIP_RIMS["lip_upper_inner"], LIP_RIMS["lip_lower_inner"]
 OPENINGS = (EYE_RIGHT, EYE_LEFT, MOUTH)
-# Chin, nose, eye and mouth corners: within their hull there is no hair.
-CORE = np.r_[PARTS["jaw"][4:13], PARTS["nose"], 36, 39, 42, 45, 48, 54]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +41,10 @@ class FacePicture:
         Among them those that have the colour of its skin: no outlines, brows or lips.
     openings : (h, w) bool
         Pixels between the lids and between the lips.
+    weight : (h, w) float32
+        How far a pixel is to be believed: 0 outside the skin, growing inwards, times the confidence of the parse.
+    hair : (h, w) bool or None
+        Pixels parsed as hair; None without a parse.
     scale : float
         Pixels of the crop per pixel of the picture.
     origin : (2,) float64
@@ -56,6 +58,8 @@ class FacePicture:
     skin: np.ndarray
     sure: np.ndarray
     openings: np.ndarray
+    weight: np.ndarray
+    hair: np.ndarray | None
     scale: float
     origin: np.ndarray
 
@@ -64,7 +68,7 @@ class FacePicture:
         return (px - self.origin + 0.5) * self.scale - 0.5
 
 
-def face_picture(img: np.ndarray, face: AlignedFace) -> FacePicture:
+def face_picture(img: np.ndarray, face: AlignedFace, parse: FaceParse | None = None) -> FacePicture:
     """Crop a picture to the projected face and find the skin in it.
 
     Skin is where the front of the face projects, less the eyes and the open mouth. Beyond the hull of the landmarks
@@ -74,11 +78,20 @@ def face_picture(img: np.ndarray, face: AlignedFace) -> FacePicture:
     ----------
     img : (H, W, 3) uint8 RGB
     face : AlignedFace
+    parse : FaceParse, optional
+        Then only what it calls face is skin, and what it calls background has no say in what colour skin is.
 
     Returns
     -------
     FacePicture
+
+    Raises
+    ------
+    ValueError
+        If the parse is of another size than the picture.
     """
+    if parse is not None and parse.labels.shape != img.shape[:2]:
+        raise ValueError(f"parse: expected labels of the picture's shape {img.shape[:2]}, got {parse.labels.shape}")
     px = face.project(face.vertices)
     low, high = px[face.region("face")].min(0), px[face.region("face")].max(0)
     margin = 0.1 * (high - low).max()
@@ -98,8 +111,19 @@ def face_picture(img: np.ndarray, face: AlignedFace) -> FacePicture:
     for rims in OPENINGS:
         openings |= opening_mask(landmarks, rims, crop.shape[:2])
     front = _front_pixels(face, fragments, cosines) & ~openings
-    skin, sure = _skin_pixels(crop, landmarks, front)
-    return FacePicture(np.ascontiguousarray(crop), points, cosines, fragments, skin, sure, openings, scale, start)
+    box = slice(start[1], end[1]), slice(start[0], end[0])
+    parts = None if parse is None else resized(parse.labels[box], crop.shape, cv2.INTER_NEAREST)
+    width = float(np.ptp(landmarks[:, 0]))
+    skin, sure = skin_of(crop, landmarks, front, parts, max(1, round(RIM * width)))
+    weight = skin_weight(skin, openings, FEATHER * width)
+    if parse is not None:
+        # Amid the face a parser may doubt whether it sees lip or skin, but not whether it sees the face.
+        confidence = np.clip(2 * resized(parse.confidence[box], crop.shape, cv2.INTER_AREA), 0, 1)
+        weight *= np.maximum(confidence, cv2.GaussianBlur(amid(landmarks, front.shape), (0, 0), max(1.0, RIM * width)))
+    hair = None if parts is None else parts == FaceLabel.HAIR
+    return FacePicture(
+        np.ascontiguousarray(crop), points, cosines, fragments, skin, sure, openings, weight, hair, scale, start
+    )
 
 
 def opening_mask(
@@ -122,50 +146,3 @@ def _front_pixels(face: AlignedFace, fragments: Fragments, cosines: np.ndarray) 
     """Pixels covered by triangles of the region ``face`` that look towards the camera."""
     wanted = (face.region("face")[face.faces].all(1)) & (cosines[face.faces].mean(1) > FRONTAL)
     return fragments.mask & wanted[fragments.face_ids]
-
-
-def _skin_tones(lab: np.ndarray, core: np.ndarray) -> np.ndarray:
-    """Colours (4, 3) of skin from shadow to light: the mean about each of four levels of lightness in the core."""
-    pixels = lab[core]
-    pixels = pixels[np.argsort(pixels[:, 0], kind="stable")]
-    band = max(1, len(pixels) // 10)
-    middles = (np.array([0.125, 0.375, 0.625, 0.875]) * len(pixels)).astype(int)
-    return np.array([pixels[max(0, middle - band) : middle + band].mean(0) for middle in middles])
-
-
-def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Front pixels that show the face, and among them those that surely have the colour of its skin.
-
-    Within the landmarks' hull everything is the face (brows, shadows, outlines) but for broad areas of another colour
-    that reach in from outside, which are hair; between eyes, nose, mouth and chin there is none. Skin may be lit from
-    one side, so within the hull its colour is any of several tones; beyond the hull only the middle one counts.
-    """
-    width = max(3, int(0.03 * np.ptp(landmarks[:, 0])))
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * width + 1, 2 * width + 1))
-    corners = np.round(landmarks).astype(np.int32)
-    brows: np.ndarray = np.zeros(front.shape, np.uint8)  # strokes a little thicker than a brow
-    cv2.polylines(brows, [corners[PARTS[brow]] for brow in ("brow_right", "brow_left")], False, 1, 2 * width)
-    hull, core = brows.copy(), np.zeros_like(brows)
-    cv2.fillConvexPoly(hull, cv2.convexHull(corners), 1)
-    cv2.fillConvexPoly(core, cv2.convexHull(corners[CORE]), 1)
-    # What lies beyond the picture is unknown, so its edge erodes too.
-    eroded = cv2.erode(hull, disc, borderType=cv2.BORDER_CONSTANT, borderValue=0)
-    inner, core = (eroded | brows).astype(bool) & front, core.astype(bool) & front
-    if not core.any():
-        return front, front
-
-    lab = cv2.cvtColor(cv2.GaussianBlur(crop, (0, 0), 0.3 * width), cv2.COLOR_RGB2LAB).astype(np.float32)
-    lab[..., 0] *= 0.5  # shading changes lightness more than hue
-    middle = np.linalg.norm(lab - np.median(lab[core], axis=0), axis=2)
-    distance = middle.copy()
-    for tone in _skin_tones(lab, core):
-        distance = np.where(hull > 0, np.minimum(distance, np.linalg.norm(lab - tone, axis=2)), distance)
-    spread = float(np.clip(2.5 * np.median(middle[inner]), *SPREAD))
-
-    broad = cv2.morphologyEx((front & (distance > spread)).astype(np.uint8), cv2.MORPH_OPEN, disc)
-    _, labels = cv2.connectedComponents(broad)
-    reaching = np.setdiff1d(np.unique(labels[(hull == 0) & (broad > 0)]), 0)
-    hair = cv2.dilate(np.isin(labels, reaching).astype(np.uint8), disc[::2, ::2]).astype(bool)
-    hair &= ~(brows.astype(bool) | core)
-    likely = cv2.erode((front & (distance < spread)).astype(np.uint8), disc[::2, ::2]).astype(bool)
-    return (inner | likely) & ~hair, likely & ~hair

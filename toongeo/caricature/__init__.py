@@ -1,0 +1,27 @@
+"""Exaggerated faces: a deformation space that extrapolates (Wu et al. 2018, "Alive caricature from 2D to 3D")."""
+
+from toongeo.caricature.bilinear_model import BilinearModel, bilinear_fit
+from toongeo.caricature.caricature_fit import CaricatureFit
+from toongeo.caricature.caricature_options import CaricatureOptions
+from toongeo.caricature.caricature_surface import caricature_surface
+from toongeo.caricature.caricatured_modes import caricatured_modes
+from toongeo.caricature.deformation_space import DeformationSpace
+from toongeo.caricature.exaggerate import exaggerate
+from toongeo.caricature.face_space import FaceSpace, face_space
+from toongeo.caricature.fit_caricature import fit_caricature
+from toongeo.caricature.linear_fit import linear_fit
+
+__all__ = [
+    "BilinearModel",
+    "CaricatureFit",
+    "CaricatureOptions",
+    "DeformationSpace",
+    "FaceSpace",
+    "bilinear_fit",
+    "caricature_surface",
+    "caricatured_modes",
+    "exaggerate",
+    "face_space",
+    "fit_caricature",
+    "linear_fit",
+]

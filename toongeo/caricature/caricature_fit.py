@@ -1,0 +1,100 @@
+"""A caricature in 3D: what `fit_caricature` returns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo._read_only import read_only
+from toongeo.caricature.face_space import FaceSpace
+from toongeo.geometry import vertex_normals
+from toongeo.model.morphable_model import MorphableModel
+from toongeo.protocols import HeadCamera
+
+__all__ = ["CaricatureFit", "CaricatureReport"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class CaricatureReport:
+    """How a caricature fit went.
+
+    Attributes
+    ----------
+    iterations : int
+        P'-steps.
+    converged : bool
+        Whether E_def changed by less than the tolerance in the last one.
+    rms_px : float
+        ``sqrt(E_lan / k)`` over the k landmarks that are there (Eq. 20).
+    max_px : float
+    warnings : tuple of str
+        What seems odd about the landmarks, from `toongeo.io.check_landmarks`.
+    seconds : float
+    """
+
+    iterations: int
+    converged: bool
+    rms_px: float
+    max_px: float
+    warnings: tuple[str, ...]
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class CaricatureFit:
+    """A face of a deformation space, bent onto the landmarks of a picture.
+
+    Attributes
+    ----------
+    vertices : (n, 3) float64, mm, model frame
+        What the space does not deform (mouth, teeth, tongue) is carried along.
+    w : (2, l) float64
+        Weights of rotation and of scale/shear.
+    energy : tuple of float
+        E_def (Eq. 6) after each P'-step, mm^2.
+    camera : HeadCamera
+        Scaled orthographic, but for an exaggerated face that had another.
+    landmark_vertices : (68,) int64
+        Vertices of the landmarks as this pose shows them.
+    space : FaceSpace
+    report : CaricatureReport
+    """
+
+    vertices: Floats
+    w: Floats
+    energy: tuple[float, ...]
+    camera: HeadCamera
+    landmark_vertices: NDArray[np.int64]
+    space: FaceSpace
+    report: CaricatureReport
+
+    def __post_init__(self) -> None:
+        read_only(self, "vertices", "w", "landmark_vertices")
+
+    @property
+    def model(self) -> MorphableModel:
+        """The face model of the space."""
+        return self.space.model
+
+    @property
+    def faces(self) -> NDArray[np.int64]:
+        """Triangles (m, 3) of the model."""
+        return self.model.faces
+
+    @cached_property
+    def normals(self) -> Floats:
+        """Unit vertex normals (n, 3), model frame."""
+        return vertex_normals(self.vertices, self.faces)
+
+    def project(self, points: ArrayLike) -> Floats:
+        """Points (k, 3), mm, model frame -> pixels (k, 2)."""
+        return self.camera.project(np.asarray(points, np.float64))
+
+    def region(self, name: str) -> NDArray[np.bool_]:
+        """Mask (n,) of a named region of the model, such as ``"face"`` or ``"lips"``."""
+        return self.model.region(name)

@@ -1,0 +1,55 @@
+"""What can be set in a caricature fit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+__all__ = ["CaricatureOptions"]
+
+
+@dataclass(frozen=True)
+class CaricatureOptions:
+    """Weights and limits of `fit_caricature` beside those it names itself.
+
+    Attributes
+    ----------
+    smoothness : float
+        Weight of ``tr(r^T L^2 r)`` against ``tr(r^T L r)``, where ``r`` is what the landmarks add to the mesh of the
+        weights and L the cotangent Laplacian. 0 is the P'-step of the paper, which leaves a spike at each landmark.
+    lip_weight, lid_weight : float
+        Weight of the rims of lips and lids between the landmarks, whose displacement is interpolated, as a fraction
+        of the landmarks' weight; 0 leaves them free. Lips touch, and cross where they are held loosely; lids are
+        apart, and crumple at their corners where they are held firmly.
+    ridge : float
+        Weight of ``|w|^2`` in the w-step, as a fraction of the mean diagonal entry of its Gauss-Newton matrix (of the
+        scale/shear part). 0 is the paper's.
+    tolerance : float
+        Relative change of E_def below which the alternation stops.
+    steps : int
+        Of Levenberg-Marquardt in a w-step; the next P'-step moves its target anyway.
+    tuck : bool
+        Whether mouth and sockets are pushed back where they come through the skin. Takes a tenth of a second.
+
+    Raises
+    ------
+    ValueError
+        If a number is negative or not finite, or ``steps`` is below 1.
+    """
+
+    smoothness: float = 100.0
+    lip_weight: float = 1e-3
+    lid_weight: float = 1e-5
+    ridge: float = 0.1
+    tolerance: float = 1e-2
+    steps: int = 3
+    tuck: bool = True
+
+    def __post_init__(self) -> None:
+        for option in fields(self):
+            value = getattr(self, option.name)
+            if not (np.isfinite(value) and value >= 0):
+                raise ValueError(f"{option.name}: expected a finite number >= 0, got {value}")
+        if self.steps < 1:
+            raise ValueError(f"steps: expected at least 1, got {self.steps}")

@@ -1,0 +1,303 @@
+"""A space of deformations that extrapolates."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse.linalg import SuperLU
+
+from toongeo._read_only import read_only
+from toongeo.caricature.deformation_representation import deformation_representation, full, packed
+from toongeo.caricature.fit_weights import WeightFit, WeightProblem
+from toongeo.geometry import validate_mesh, vertex_components
+from toongeo.geometry._factor import factor_spd, solve
+from toongeo.geometry._small_matrices import product
+from toongeo.geometry.one_rings import OneRings, one_rings
+from toongeo.geometry.one_thread import one_thread
+from toongeo.geometry.rotation_exp import rotation_exp
+from toongeo.geometry.validate_mesh import validate_vertices
+from toongeo.io.atomic_write import atomic_write
+
+__all__ = ["DeformationSpace"]
+
+Floats = NDArray[np.float64]
+
+_FORMAT = 1
+
+
+@dataclass(frozen=True, eq=False)
+class DeformationSpace:
+    """Deformations of a reference mesh that blend and extrapolate (Wu et al. 2018).
+
+    With weights ``w = (w_R, w_S)`` the one-ring of vertex i is deformed by
+    ``T_i(w) = exp(sum_l w_R,l log R_l,i) (I + sum_l w_S,l (S_l,i - I))`` (Eq. 5): rotations turn on, where a sum of
+    displacements would swell and shear. Make it with `from_meshes`.
+
+    Attributes
+    ----------
+    reference : (n, 3) float64
+        Vertices at w = 0.
+    faces : (m, 3) int64
+    rotations : (l, 3, n) float32
+        Rotation vectors of each shape, radians (Eq. 4).
+    stretches : (l, 6, n) float32
+        xx, xy, xz, yy, yz, zz of ``S - I``.
+    offsets : (l, c, 3) float64
+        Displacement of the mean vertex of each connected component, which the deformation gradients do not tell.
+
+    Examples
+    --------
+    >>> V = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> F = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    >>> space = DeformationSpace.from_meshes(V, F, [V * [2, 1, 1], V * [1, 1, 3]], align=False)
+    >>> np.ptp(space.vertices([2.0, 0.5]), axis=0).round(5)
+    array([3., 1., 2.])
+    """
+
+    reference: Floats
+    faces: NDArray[np.int64]
+    rotations: NDArray[np.float32]
+    stretches: NDArray[np.float32]
+    offsets: Floats
+    _rings: OneRings | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        V, F = validate_mesh(self.reference, self.faces, names=("reference", "faces"))
+        object.__setattr__(self, "reference", V)
+        object.__setattr__(self, "faces", F)
+        count, n = len(self.rotations), len(V)
+        components = int(vertex_components(F, n).max()) + 1
+        for name, shape in (("rotations", (3, n)), ("stretches", (6, n)), ("offsets", (components, 3))):
+            array = getattr(self, name)
+            if array.shape != (count, *shape):
+                raise ValueError(f"{name}: expected shape {(count, *shape)}, got {array.shape}")
+            if not np.isfinite(array).all():
+                raise ValueError(f"{name}: expected finite numbers, got NaN or infinity")
+        read_only(self, "reference", "faces", "rotations", "stretches", "offsets")
+
+    @classmethod
+    def from_meshes(
+        cls, V: ArrayLike, F: ArrayLike, shapes: Sequence[ArrayLike] | NDArray, *, align: bool = True
+    ) -> DeformationSpace:
+        """Space spanned by shapes of one topology.
+
+        Parameters
+        ----------
+        V : (n, 3) float
+            Vertices of the reference, any unit.
+        F : (m, 3) int
+            Triangles of all.
+        shapes : (l, n, 3) float
+            Vertices of the deformed meshes, l >= 2.
+        align : bool
+            First bring every shape onto the reference by a rigid motion (least squares over the vertices), so that
+            motions of the whole do not count as deformation. False if the shapes share a frame.
+
+        Raises
+        ------
+        ValueError
+            If a mesh is malformed, has another number of vertices than the reference or they are fewer than two; if
+            the reference has a triangle without area or a vertex whose edges do not span a plane.
+        """
+        V, F = validate_mesh(V, F, names=("V_ref", "F"))
+        if len(shapes) < 2:
+            raise ValueError(f"shapes: expected at least 2, got {len(shapes)}")
+        checked = [validate_vertices(shape, name=f"shapes[{k}]") for k, shape in enumerate(shapes)]
+        for k, shape in enumerate(checked):
+            if shape.shape != V.shape:
+                raise ValueError(f"shapes[{k}]: expected {len(V)} vertices as the reference has, got {len(shape)}")
+        rings = one_rings(V, F)
+        component = vertex_components(F, len(V))
+        rotations = np.empty((len(checked), 3, len(V)), np.float32)
+        stretches = np.empty((len(checked), 6, len(V)), np.float32)
+        offsets = np.empty((len(checked), int(component.max()) + 1, 3))
+        for k, shape in enumerate(checked):
+            moved = _rigidly_aligned(shape, V) if align else shape
+            rotations[k], stretches[k] = deformation_representation(rings, moved)
+            offsets[k] = _means(moved - V, component)
+        return cls(V, F, rotations, stretches, offsets, rings)
+
+    @cached_property
+    def rings(self) -> OneRings:
+        """One-rings of the reference."""
+        return self._rings or one_rings(self.reference, self.faces)
+
+    @cached_property
+    def stretch_gram(self) -> Floats:
+        """``sum_i <S'_l C_i, S'_m>`` (l, l): the part of the Gauss-Newton matrix that does not depend on w."""
+        weighted = np.empty_like(self.stretches)
+        half = packed(np.full((3, 3, 1), 2.0) - np.eye(3)[:, :, None])  # off-diagonals stand for two entries
+        for k, s in enumerate(self.stretches):
+            SC = product(full(s.astype(np.float64)), self.rings.gram)
+            weighted[k] = packed(0.5 * (SC + SC.transpose(1, 0, 2))) * half
+        with one_thread():
+            flat = self.stretches.reshape(len(self.stretches), -1)
+            return (flat @ weighted.reshape(flat.shape).T).astype(np.float64)
+
+    @cached_property
+    def component(self) -> NDArray[np.int64]:
+        """Number of the connected component of every vertex (n,)."""
+        return vertex_components(self.faces, len(self.reference))
+
+    def gradients(self, w: ArrayLike) -> Floats:
+        """``T_i(w) - I`` (3, 3, n) of Eq. 5 for weights (l,) or (2, l)."""
+        rotation, stretch = self.fields(self.checked_weights(w))
+        S = full(stretch)
+        S[[0, 1, 2], [0, 1, 2]] += 1.0
+        T = product(rotation_exp(rotation), S)
+        T[[0, 1, 2], [0, 1, 2]] -= 1.0
+        return T
+
+    def fields(self, w: Floats) -> tuple[Floats, Floats]:
+        """Rotation vectors (3, n) and ``S - I`` (6, n) for weights (2, l): the sums of Eq. 5."""
+        sums = []
+        with one_thread():
+            for weights, basis in zip(w, (self.rotations, self.stretches), strict=True):
+                total = weights.astype(basis.dtype) @ basis.reshape(len(basis), -1)
+                sums.append(total.reshape(basis.shape[1:]).astype(np.float64))
+        return sums[0], sums[1]
+
+    def vertices(self, w: ArrayLike) -> Floats:
+        """Mesh of weights: the vertices (n, 3) whose one-rings are deformed most nearly by T(w) (Eq. 6-8).
+
+        Parameters
+        ----------
+        w : (l,) or (2, l) float
+            Weights of rotation and of scale/shear; one row serves for both. 1 is the shape, 2 twice its deformation.
+
+        Raises
+        ------
+        ValueError
+            If the number of weights is not that of the shapes, or one is not finite.
+        """
+        w = self.checked_weights(w)
+        return self.reference + self.placed(self.integrated(self.gradients(w)), w)
+
+    def integrated(self, gradients: Floats) -> Floats:
+        """Displacements (n, 3) whose ring gradients come nearest to ``T - I`` (3, 3, n); one vertex a component is 0.
+
+        It solves Eq. 8, ``2 L u = sum_j c_ij (T_i + T_j - 2 I) e_ij``, for displacements.
+        """
+        return self.pinned_solve(0.5 * self.rings.spread(gradients))
+
+    def pinned_solve(self, b: Floats) -> Floats:
+        """``L x = b`` (n, k) with x = 0 at the first vertex of every component."""
+        x = np.zeros(b.shape)
+        x[self._free] = solve(self._factor, b[self._free])
+        return x
+
+    @cached_property
+    def _free(self) -> NDArray[np.int64]:
+        return np.setdiff1d(np.arange(len(self.reference)), np.unique(self.component, return_index=True)[1])
+
+    @cached_property
+    def _factor(self) -> SuperLU:
+        return factor_spd(self.rings.laplacian[self._free][:, self._free])
+
+    def placed(self, displacement: Floats, w: Floats) -> Floats:
+        """Displacements (n, 3) with the mean of each component where the shapes have it, weighted by ``w`` (2, l)."""
+        wanted = np.tensordot(w.mean(axis=0), self.offsets, 1)
+        return displacement + (wanted - _means(displacement, self.component))[self.component]
+
+    def fit(
+        self, P: ArrayLike, *, start: ArrayLike | None = None, ridge: float = 0.0, iterations: int = 50
+    ) -> WeightFit:
+        """Weights whose deformation gradients come nearest to those of a mesh (Eq. 9).
+
+        Parameters
+        ----------
+        P : (n, 3) float
+            Vertices, in the frame of the reference.
+        start : (l,) or (2, l) float, optional
+            Zeros if None.
+        ridge : float
+            Weight of ``|w|^2``, as a fraction of the mean diagonal of the Gauss-Newton matrix at w = 0.
+        iterations : int
+            At most so many steps of Levenberg-Marquardt.
+
+        Returns
+        -------
+        WeightFit
+
+        Raises
+        ------
+        ValueError
+            If `P` or `start` do not fit, or `ridge` or `iterations` are negative.
+        """
+        P = validate_vertices(P, name="P")
+        if P.shape != self.reference.shape:
+            raise ValueError(f"P: expected shape {self.reference.shape}, got {P.shape}")
+        w = np.zeros((2, len(self.rotations))) if start is None else self.checked_weights(start, "start")
+        return WeightProblem(self, P).solve(w, ridge=ridge, iterations=iterations)
+
+    def energy(self, P: ArrayLike, w: ArrayLike) -> float:
+        """``E_def`` of Eq. 6: what deformation gradients T(w) leave of the edges of a mesh; unit of P, squared."""
+        return WeightProblem(self, validate_vertices(P, name="P")).energy(self.checked_weights(w))
+
+    def checked_weights(self, w: ArrayLike, name: str = "w") -> Floats:
+        """Weights (2, l) from (l,) or (2, l)."""
+        weights = np.asarray(w, np.float64)
+        count = len(self.rotations)
+        if weights.shape not in ((count,), (2, count)):
+            raise ValueError(f"{name}: expected shape ({count},) or (2, {count}), got {weights.shape}")
+        if not np.isfinite(weights).all():
+            raise ValueError(f"{name}: expected finite weights, got NaN or infinity")
+        return np.array(np.broadcast_to(weights, (2, count)))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write an ``.npz`` file without pickles; whole, or not at all.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written.
+        """
+        buffer = io.BytesIO()
+        np.savez(
+            buffer,
+            format=np.array(_FORMAT),
+            reference=self.reference,
+            faces=self.faces,
+            rotations=self.rotations,
+            stretches=self.stretches,
+            offsets=self.offsets,
+        )
+        atomic_write({path: buffer.getvalue()})
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> DeformationSpace:
+        """Read what `save` wrote.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        ValueError
+            If it holds something else.
+        """
+        with np.load(path, allow_pickle=False) as archive:
+            fields = ("reference", "faces", "rotations", "stretches", "offsets")
+            missing = [name for name in ("format", *fields) if name not in archive]
+            if missing or archive["format"] != _FORMAT:
+                what = f"no {missing[0]!r}" if missing else f"format {archive['format']}"
+                raise ValueError(f"path: expected a deformation space of format {_FORMAT}, got {what} in {path}")
+            return cls(*(archive[name] for name in fields))
+
+
+def _means(x: Floats, component: NDArray[np.int64]) -> Floats:
+    """Mean (c, 3) over each component of values (n, 3)."""
+    return np.stack([np.bincount(component, column) for column in x.T], 1) / np.bincount(component)[:, None]
+
+
+def _rigidly_aligned(P: Floats, V: Floats) -> Floats:
+    """``P`` turned and shifted onto ``V``, in the least-squares sense (Kabsch)."""
+    A, B = P - P.mean(0), V - V.mean(0)
+    U, _, Vt = np.linalg.svd(B.T @ A)
+    rotation = (U * [1.0, 1.0, np.sign(np.linalg.det(U @ Vt))]) @ Vt
+    return A @ rotation.T + V.mean(0)
