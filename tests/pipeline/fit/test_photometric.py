@@ -13,10 +13,12 @@ from toongeo.pipeline.fit.canonical_frame import CanonicalFrame
 from toongeo.pipeline.fit.confidence import skin_likelihood
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.gauss_newton_step import gauss_newton_step
 from toongeo.pipeline.fit.light_and_albedo import best_light, light_penalty
 from toongeo.pipeline.fit.photometric_problem import PhotometricProblem
 from toongeo.pipeline.fit.photometric_samples import photometric_samples
 from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
+from toongeo.pipeline.fit.quadratic_model import QuadraticModel
 from toongeo.pipeline.fit.sample_normals import sample_normals
 from toongeo.pipeline.fit.shading_basis import shading_basis, shading_slope
 from toongeo.pipeline.fit.visible_samples import visible_samples
@@ -111,7 +113,14 @@ def test_the_gradient_of_the_photometric_loss(pass_loss, taylor_slope, block):
     direction = np.zeros(len(x))
     chosen = block_of(loss.photometric, block)
     direction[chosen] = np.random.default_rng(1).standard_normal(direction[chosen].shape)
-    assert taylor_slope(loss.photometric, x, direction) == pytest.approx(2, abs=0.1)
+    photometric = loss.photometric
+
+    def value(x):
+        observed = photometric.observe(x)
+        r = photometric.residuals(x, observed).ravel()
+        return float(r @ r), 2 * r @ photometric.jacobian(x, observed)
+
+    assert taylor_slope(value, x, direction) == pytest.approx(2, abs=0.1)
 
 
 @pytest.mark.parametrize("block", [block for block in BLOCKS if block != "light"])
@@ -120,18 +129,101 @@ def test_the_gradient_with_the_light_eliminated(pass_loss, taylor_slope, block):
     direction = np.zeros(len(z))
     chosen = slice(0, len(z)) if block == "everything" else block_of(loss.photometric, block)
     direction[chosen] = np.random.default_rng(2).standard_normal(direction[chosen].shape)
-    assert taylor_slope(loss, z, direction) == pytest.approx(2, abs=0.1)
+    assert taylor_slope(lambda z: (loss(z), loss.model(z).gradient), z, direction) == pytest.approx(2, abs=0.1)
+
+
+@pytest.mark.parametrize("block", BLOCKS)
+def test_the_jacobian_of_the_residuals(pass_loss, block):
+    loss, z = pass_loss
+    x, observed = loss.full(z)
+    photometric = loss.photometric
+    d = np.zeros(len(x))
+    d[block_of(photometric, block)] = 1.0
+    plus, minus = (photometric.residuals(at, photometric.observe(at)) for at in (x + 1e-6 * d, x - 1e-6 * d))
+    difference = (plus - minus).ravel() / 2e-6
+    np.testing.assert_allclose(photometric.jacobian(x, observed) @ d, difference, atol=1e-6 * np.abs(difference).max())
+
+
+def test_the_model_of_a_step_is_that_of_all_residuals_with_the_best_light(pass_loss):
+    """Minimised over the light, the quadratic model of everything is the model that a step uses.
+
+    Landmarks, prior and ridge are quadratic but for the pose; the residuals are differenced.
+    """
+    loss, z = pass_loss
+    rows = np.arange(0, len(loss.photometric.weights), 12)
+    small = replace(
+        loss.photometric,
+        samples=loss.photometric.samples.subset(rows),
+        slopes=loss.photometric.slopes[rows],
+        weights=loss.photometric.weights[rows],
+    )
+    loss = replace(loss, photometric=small)
+    x, _ = loss.full(z)
+    J = np.empty((3 * len(rows), small.size))
+    for k in range(small.size):
+        d = np.zeros(small.size)
+        d[k] = 1e-6
+        plus, minus = (small.residuals(at, small.observe(at)) for at in (x + d, x - d))
+        J[:, k] = (plus - minus).ravel() / 2e-6
+    normal = J.T @ J
+    n, size = small.unknowns.size, len(z)
+    normal[size:, size:] += np.diag(np.repeat(loss.penalty, 3) + 1e-9 * np.trace(normal[size:, size:]))
+    whole = 2 * loss.photometric_weight * normal
+    whole[:n, :n] += loss.geometry.matrix(z[:n])
+    whole[n:size, n:size] += 2 * loss.albedo_weight * np.eye(size - n)
+    model = loss.model(z)
+    expected = np.linalg.inv(np.linalg.inv(whole)[:size, :size])  # of a block of the inverse: Schur's complement
+    units = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
+    np.testing.assert_allclose(model.matrix / units, expected / units, atol=1e-5)
+    assert model.value == loss(z)
+
+
+def test_a_step_never_raises_the_loss(pass_loss, subject, fitted):
+    """From the start of a pass, from a bad place, and at the end, where nothing is left to gain."""
+    loss, z = pass_loss
+    bounds = np.full(len(z), -3.0), np.full(len(z), 3.0)
+    settings = {"algorithm": "LD_LBFGS", "tolerance": 1e-9, "max_evaluations": 2000}
+    rng = np.random.default_rng(4)
+    for spread in (0.0, 0.5):
+        at = np.clip(z + spread * rng.standard_normal(len(z)), *bounds)
+        values = [loss(at)]
+        for _ in range(5):
+            step = gauss_newton_step(loss, at, bounds=bounds, **settings)
+            assert step.value == loss(step.z)
+            assert (step.z >= bounds[0]).all() and (step.z <= bounds[1]).all()
+            at = step.z
+            values.append(step.value)
+        assert (np.diff(values) <= 0).all()
+        assert values[1] < values[0]
+        assert values[-2] - values[-1] < 0.02 * (values[0] - values[-1])
+
+
+def test_a_step_that_leads_nowhere_is_not_taken():
+    """A model whose gradient points the wrong way."""
+
+    class Uphill:
+        def __call__(self, z):
+            return float(z @ z)
+
+        def model(self, z):
+            return QuadraticModel(z, float(z @ z), -2 * z, 2 * np.eye(len(z)))
+
+    start = np.array([1.0, -0.5])
+    bounds = np.full(2, -9.0), np.full(2, 9.0)
+    step = gauss_newton_step(Uphill(), start, bounds=bounds, algorithm="LD_LBFGS", tolerance=1e-9, max_evaluations=99)
+    np.testing.assert_array_equal(step.z, start)
+    assert step.value == 1.25
 
 
 def test_shading_is_that_of_the_renderer_and_its_slope_too(rng, taylor_slope):
     normals = rng.normal(size=(50, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    light, pull = rng.normal(size=(9, 3)), rng.normal(size=(50, 9))
+    light = rng.normal(size=(9, 3))
     np.testing.assert_allclose(shading_basis(normals) @ light, irradiance(normals, light) / np.pi, atol=1e-12)
 
     def value(x):
         at = x.reshape(50, 3)
-        return float((pull * shading_basis(at)).sum()), shading_slope(at, pull).ravel()
+        return float((shading_basis(at) @ light[:, 0]).sum()), shading_slope(at, light[:, 0]).ravel()
 
     assert taylor_slope(value, normals.ravel(), rng.normal(size=150)) == pytest.approx(2, abs=0.05)
 
@@ -146,11 +238,13 @@ def test_normals_of_the_samples_are_those_of_the_mesh_and_their_slope_is_right(m
         part = samples.subset(rows)
         expected = vertex_normals(V, model.faces)[part.vertices]
         np.testing.assert_allclose(sample_normals(V[ring], part).units, expected, atol=1e-12)
-    wanted = rng.normal(size=(len(part.vertices), 3))
+    part = replace(part, modes=part.modes.astype(np.float64))
+    wanted, moved = rng.normal(size=(2, len(part.vertices), 2, 3))
 
     def value(x):
         found = sample_normals(x.reshape(-1, 3), part)
-        return float((wanted * found.units).sum()), found.pulled_back(wanted, len(ring)).ravel()
+        quantities = wanted @ found.units[:, :, None] + moved @ x.reshape(-1, 3)[part.own][:, :, None]
+        return float(quantities.sum()), found.derivative(wanted, moved).sum(axis=0)
 
     direction = 0.02 * rng.normal(size=3 * len(ring))
     assert taylor_slope(value, V[ring].ravel(), direction) == pytest.approx(2, abs=0.1)
@@ -194,7 +288,8 @@ def test_at_the_best_light_its_gradient_vanishes(pass_loss):
     photometric = loss.photometric
     x, observed = loss.full(z)
     light = x[photometric.light].reshape(9, 3)
-    gradient = photometric.at(x, observed)[1][photometric.light].reshape(9, 3)
+    slope = 2 * photometric.residuals(x, observed).ravel() @ photometric.jacobian(x, observed)
+    gradient = slope[photometric.light].reshape(9, 3)
     np.testing.assert_allclose(gradient + 2 * loss.penalty[:, None] * light, 0, atol=1e-9)
 
 
@@ -295,7 +390,7 @@ def test_a_rendered_face_is_recovered(model, rendered, seed):
             (found, vertex_normals(refined.vertices, model.faces) @ refined.camera.rotation.T, refined.light),
         )
     ]
-    assert np.sqrt(((shaded[1] - shaded[0]) ** 2).mean() / (shaded[0] ** 2).mean()) < 0.05
+    assert np.sqrt(((shaded[1] - shaded[0]) ** 2).mean() / (shaded[0] ** 2).mean()) < 0.025
     difference = residual_map(picture, refined)
     assert np.sqrt(np.nanmean(difference**2)) < 0.02
 
@@ -306,7 +401,7 @@ def test_the_report(fitted):
     assert report.residual_after < 0.75 * report.residual_before < report.residual_ambient
     assert 0.6 < report.confident_fraction <= 1
     assert report.passes == PhotometricOptions().passes
-    assert report.evaluations <= report.passes * (PhotometricOptions().max_evaluations + 1)
+    assert report.evaluations <= report.passes * PhotometricOptions().steps * (PhotometricOptions().max_evaluations + 1)
     assert report.seconds > 0 and refined.report.seconds > fit.report.seconds
     assert refined.albedo.shape == (9,) and refined.light.shape == (9, 3)
     assert fit.albedo is None and fit.photometric is None
@@ -343,7 +438,7 @@ def test_hair_over_half_the_forehead_hardly_pulls(model, subject, fitted, with_m
     mask[y0 - 20 : y1, x0 : x1 + 20] = 0
     other = photometric_fit(covered, fit, landmarks, mask=mask if with_mask else None)
     face = model.region("face")
-    assert np.linalg.norm(other.vertices[face] - refined.vertices[face], axis=1).mean() < 0.6
+    assert np.linalg.norm(other.vertices[face] - refined.vertices[face], axis=1).mean() < 0.3
     pictures = [rendered_picture(found, picture.shape).astype(int) for found in (other, refined)]
     assert np.abs(pictures[0] - pictures[1]).mean() < 1.5
 
@@ -403,7 +498,7 @@ def test_portraits_are_explained_better(shared, portrait):
     img, landmarks = read_image(path), read_landmarks(path.with_suffix(".pts"))
     report = fit_3dmm(img, landmarks, photometric=True).photometric
     assert report.residual_after < report.residual_before
-    assert report.residual_after**2 < 0.6 * report.residual_ambient**2
+    assert report.residual_after**2 < 0.5 * report.residual_ambient**2
 
 
 def test_a_grey_picture_gets_grey_light(fitted, subject):

@@ -76,7 +76,9 @@ class PhotometricReport:
         Share of the visible face that the confidence map believes.
     status : str
         nlopt's, of the last pass.
-    passes, evaluations : int
+    passes : int
+    evaluations : int
+        Of the quadratic models of the loss, in all passes.
     seconds : float
     """
 

@@ -130,6 +130,11 @@ class LandmarkLoss:
         J = self.jacobian(x)
         return 2 / self.count * ((self.weights @ J) * J).sum(axis=(0, 1))
 
+    def matrix(self, x: Floats) -> Floats:
+        """The Gauss-Newton matrix (n, n), ``2/N sum_n J_n^T W_n J_n``."""
+        J = self.jacobian(x)
+        return 2 / self.count * (self.weights @ J).reshape(-1, J.shape[2]).T @ J.reshape(-1, J.shape[2])
+
     def pose_curvature(self, x: Floats) -> Floats:
         """Rows (6, n) of the Gauss-Newton matrix that belong to rotation, scale and translation."""
         J = self.jacobian(x).reshape(2 * len(self.points), -1)

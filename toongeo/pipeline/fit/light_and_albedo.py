@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.pipeline.fit.photometric_loss import N_LIGHT, Observation, PhotometricLoss
+from toongeo.pipeline.fit.quadratic_model import QuadraticModel
 from toongeo.pipeline.fit.total_loss import TotalLoss
 
 __all__ = ["ReducedLoss", "best_light", "light_penalty"]
@@ -78,23 +79,30 @@ class ReducedLoss:
         x[photometric.light] = best_light(photometric, observed, self.penalty).ravel()
         return x, observed
 
-    def __call__(self, z: Floats) -> tuple[float, Floats]:
-        """Value and gradient (n,) at ``z`` (n,)."""
-        (x, observed), n = self.full(z), self.photometric.unknowns.size
-        geometry, geometry_slope = self.geometry(z[:n])
-        photometric, slope = self.photometric.at(x, observed)
-        light = x[self.photometric.light].reshape(9, 3)
-        photometric += float(self.penalty @ (light**2).sum(axis=1))
-        gradient = self.photometric_weight * slope[: len(z)]
-        gradient[:n] += geometry_slope
-        gradient[n:] += 2 * self.albedo_weight * z[n:]
-        value = geometry + self.photometric_weight * photometric + self.albedo_weight * float(z[n:] @ z[n:])
-        return value, gradient
+    def __call__(self, z: Floats) -> float:
+        """Value at ``z`` (n,)."""
+        x, observed = self.full(z)
+        return self._value(x, float((self.photometric.residuals(x, observed) ** 2).sum()))
 
-    def curvature(self, z: Floats) -> Floats:
-        """Diagonal (n,) that the variables are scaled by."""
+    def model(self, z: Floats) -> QuadraticModel:
+        """Value, gradient and Gauss-Newton matrix at ``z``, the light eliminated by its Schur complement."""
+        (x, observed), n, size = self.full(z), self.photometric.unknowns.size, len(z)
+        r = self.photometric.residuals(x, observed)
+        J = self.photometric.jacobian(x, observed)
+        normal = (J.T @ J).astype(np.float64)
+        lit = normal[size:, size:] + np.diag(np.repeat(self.penalty, 3) + 1e-9 * np.trace(normal[size:, size:]))
+        matrix = normal[:size, :size] - normal[:size, size:] @ np.linalg.solve(lit, normal[size:, :size])
+        matrix *= 2 * self.photometric_weight
+        gradient = 2 * self.photometric_weight * (r.astype(J.dtype).ravel() @ J[:, :size]).astype(np.float64)
+        gradient[:n] += self.geometry(z[:n])[1]
+        gradient[n:] += 2 * self.albedo_weight * z[n:]
+        matrix[:n, :n] += self.geometry.matrix(z[:n])
+        matrix[n:, n:] += 2 * self.albedo_weight * np.eye(size - n)
+        return QuadraticModel(z, self._value(x, float((r**2).sum())), gradient, matrix)
+
+    def _value(self, x: Floats, photometric: float) -> float:
+        z, light = x[: self.photometric.light.start], x[self.photometric.light].reshape(9, 3)
+        photometric += float(self.penalty @ (light**2).sum(axis=1))
         n = self.photometric.unknowns.size
-        diagonal = self.photometric_weight * self.photometric.curvature(self.full(z)[0])[: len(z)]
-        diagonal[:n] += self.geometry.curvature(z[:n])
-        diagonal[n:] += 2 * self.albedo_weight
-        return diagonal
+        albedo = self.albedo_weight * float(z[n:] @ z[n:])
+        return self.geometry(z[:n])[0] + self.photometric_weight * photometric + albedo

@@ -48,6 +48,13 @@ class NodLoss:
         curvature[self.unknowns.rotation] = 2 * self._weight * np.square(self._up(x)[1])
         return curvature
 
+    def matrix(self, x: Floats) -> Floats:
+        """The Gauss-Newton matrix (n, n)."""
+        matrix = np.zeros((self.unknowns.size, self.unknowns.size))
+        slope = self._up(x)[1]
+        matrix[self.unknowns.rotation, self.unknowns.rotation] = 2 * self._weight * np.outer(slope, slope)
+        return matrix
+
     @property
     def _weight(self) -> float:
         return float(1 / np.radians(self.deviation) ** 2)

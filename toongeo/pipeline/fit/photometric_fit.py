@@ -35,8 +35,9 @@ def photometric_fit(
     """Identity, expression, pose, albedo and light of a face whose landmarks were fitted.
 
     Minimises ``w_l L_lan + w_p L_photo + w_r L_reg`` (Eq. 3) from where `fit_3dmm` arrived. Each pass freezes
-    visibility, normals and robust weights at the face found so far, and minimises by L-BFGS over shape, pose and
-    albedo with the light eliminated in closed form. Landmarks stay in the loss, so the face cannot drift from them.
+    visibility and robust weights at the face found so far, and takes a Gauss-Newton step over shape, pose and albedo
+    with the light eliminated in closed form: nlopt minimises the quadratic model within the bounds. Landmarks stay in
+    the loss, so the face cannot drift from them.
 
     The picture is resampled onto the canonical frame of the fit, so its size, and the place and tilt of the face in
     it, matter only through the resampling.
@@ -51,8 +52,8 @@ def photometric_fit(
     landmarks : (68, 2) array_like, px
         NaN rows are missing.
     mask : (H, W) array_like of bool or float in [0, 1], optional
-        Confidence map A of Eq. 5: where the bare face is seen. By default the likelihood of skin, learned from the
-        middle of the face.
+        Confidence map A of Eq. 5: where the bare face is seen. By default the likelihood of skin, learned from
+        cheeks and nose.
     options : PhotometricOptions, optional
     fit_options : FitOptions, optional
         Those that ``fit`` was made with.
@@ -75,7 +76,7 @@ def photometric_fit(
     References
     ----------
     Pan et al. 2024, "Generating animatable 3D cartoon faces from single portraits", section 3.1, Eq. 1-6.
-    Frozen visibility and normals: V. Blanz, T. Vetter, "A morphable model for the synthesis of 3D faces", SIGGRAPH
+    Frozen visibility: V. Blanz, T. Vetter, "A morphable model for the synthesis of 3D faces", SIGGRAPH
     1999.
     """
     started = time.perf_counter()

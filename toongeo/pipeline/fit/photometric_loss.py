@@ -1,4 +1,4 @@
-"""The photometric loss and its gradient."""
+"""The photometric loss: its residuals and their derivative."""
 
 from __future__ import annotations
 
@@ -113,74 +113,34 @@ class PhotometricLoss:
         """Shading times albedo (k, 3), linear light."""
         return observed.basis @ x[self.light].reshape(9, 3) * observed.reflectance
 
-    def __call__(self, x: Floats) -> tuple[float, Floats]:
-        """Value and gradient (n,) at ``x`` (n,)."""
-        return self.at(x, self.observe(x))
+    def residuals(self, x: Floats, observed: Observation) -> Floats:
+        """``sqrt(A_i / |A|) r_i`` (k, 3), whose squares add up to the loss."""
+        return np.sqrt(self.weights)[:, None] * self.slopes * (self.rendered(x, observed) - observed.seen)
 
-    def at(self, x: Floats, observed: Observation) -> tuple[float, Floats]:
-        """Value and gradient (n,) at ``x`` (n,), of which ``observed`` is known."""
-        light = x[self.light].reshape(9, 3)
-        shading = observed.basis @ light
-        r = self.slopes * (shading * observed.reflectance - observed.seen)
-        weighted = self.weights[:, None] * r
-        pull = 2 * weighted * self.slopes  # dL/d(rendered), and minus dL/dI
-        along = -(pull[:, :, None] * observed.seen_slope).sum(axis=1)
-        gradient = np.empty(self.size)
-        by_normal = shading_slope(
-            observed.normals.units @ (self.roll @ self._rotation(x)).T, (pull * observed.reflectance) @ light.T
-        )
-        gradient[: self.unknowns.size] = self._of_geometry(x, observed, along, by_normal @ self.roll)
-        gradient[self.albedo] = (pull * shading * observed.reflectance_slope).ravel() @ self.samples.albedo
-        gradient[self.light] = (observed.basis.T @ (pull * observed.reflectance)).ravel()
-        return float((weighted * r).sum()), gradient
-
-    def _of_geometry(self, x: Floats, observed: Observation, pull: Floats, turn: Floats) -> Floats:
-        """Gradient by the geometry from that by the projected points (k, 2) and by the normals (k, 3), unrolled."""
+    def jacobian(self, x: Floats, observed: Observation) -> NDArray[np.floating]:
+        """Derivative (3 k, n) of the residuals, of the type of the modes."""
         u, y, R = self.unknowns, observed.posed, self._rotation(x)
-        gradient = np.empty(u.size)
-        modes = self.samples.modes
-        forces = observed.normals.pulled_back(turn @ R, len(self.samples.mean))
-        forces[self.samples.own] += pull @ (np.exp(x[u.log_scale]) * R[:2])
-        gradient[u.shape] = forces.astype(modes.dtype).ravel() @ modes
-        # dy = (J dw) x y, so dL/dw = J^T sum(y x dL/dy), where dL/dy has no third component.
-        torque = np.array(
-            [
-                -(y[:, 2] @ pull[:, 1]),
-                y[:, 2] @ pull[:, 0],
-                y[:, 0] @ pull[:, 1] - y[:, 1] @ pull[:, 0],
-            ]
-        )
-        torque += cross((observed.normals.units @ R.T).T, turn.T).sum(axis=1)
-        gradient[u.rotation] = left_jacobian(x[u.rotation]).T @ torque
-        gradient[u.log_scale] = (y[:, :2] * pull).sum()
-        gradient[u.translation] = pull.sum(axis=0)
-        return gradient
-
-    def curvature(self, x: Floats) -> Floats:
-        """Diagonal (n,) of the Gauss-Newton matrix, with the picture's slope taken as alike in all directions.
-
-        It only scales the variables.
-        """
-        u = self.unknowns
-        observed = self.observe(x)
-        y, seen_slope = observed.posed, observed.seen_slope
-        reflectance, reflectance_slope = observed.reflectance, observed.reflectance_slope
-        shading = observed.basis @ x[self.light].reshape(9, 3)
-        strength = 2 * self.weights[:, None] * self.slopes**2
-        steep = (strength[:, :, None] * seen_slope**2).sum(axis=(1, 2)) / 2
-        diagonal = np.zeros(self.size)
-        modes = self.samples.modes.reshape(len(self.samples.mean), 3, -1)[self.samples.own]
-        modes = modes.reshape(3 * len(y), -1)
-        # Two of the three directions of a mode's step are seen.
-        grown = np.repeat(2 / 3 * steep * np.exp(2 * x[u.log_scale]), 3).astype(modes.dtype)
-        diagonal[u.shape] = grown @ modes**2
-        x2, y2, z2 = (y**2).T
-        diagonal[u.rotation] = steep @ z2, steep @ z2, steep @ (x2 + y2)
-        diagonal[u.log_scale] = steep @ (x2 + y2)
-        diagonal[u.translation] = steep.sum()
-        diagonal[self.albedo] = (strength * (shading * reflectance_slope) ** 2).ravel() @ self.samples.albedo**2
-        diagonal[self.light] = ((observed.basis**2).T @ (strength * reflectance**2)).ravel()
-        return diagonal
+        k, camera = len(y), self.roll @ self._rotation(x)
+        light = x[self.light].reshape(9, 3)
+        factor = np.sqrt(self.weights)[:, None] * self.slopes
+        lit = factor * observed.reflectance
+        at = observed.normals.units @ camera.T
+        turn = np.stack([shading_slope(at, light[:, c]) for c in range(3)], axis=1) * lit[:, :, None] @ camera
+        pull = -factor[:, :, None] * observed.seen_slope
+        J = np.zeros((k, 3, self.size), self.samples.modes.dtype)
+        by_vertex = observed.normals.derivative(turn, pull @ (np.exp(x[u.log_scale]) * R[:2]))
+        J[:, :, u.shape] = (by_vertex @ self.samples.modes).reshape(k, 3, -1)
+        # dy = (J dw) x y and dn = (J dw) x n.
+        pull3 = np.pad(pull, ((0, 0), (0, 0), (0, 1)))
+        torque = _cross(y, pull3) + _cross(observed.normals.units @ R.T, turn @ R.T)
+        J[:, :, u.rotation] = torque @ left_jacobian(x[u.rotation])
+        J[:, :, u.log_scale] = (pull * y[:, None, :2]).sum(axis=2)
+        J[:, :, u.translation] = pull
+        shading = factor * (observed.basis @ light) * observed.reflectance_slope
+        J[:, :, self.albedo] = (shading.reshape(-1, 1) * self.samples.albedo).reshape(k, 3, -1)
+        for channel in range(3):
+            J[:, channel, self.light][:, channel::3] = lit[:, channel, None] * observed.basis
+        return J.reshape(3 * k, -1)
 
     def _shaped(self, x: Floats) -> Floats:
         """Samples and their neighbours (r, 3) in the model frame."""
@@ -189,3 +149,8 @@ class PhotometricLoss:
 
     def _rotation(self, x: Floats) -> Floats:
         return rotation_matrix(x[self.unknowns.rotation]) @ self.rotation0
+
+
+def _cross(points: Floats, vectors: Floats) -> Floats:
+    """Each point (k, 3) times its vectors (k, c, 3)."""
+    return cross(points.T[:, :, None], vectors.transpose(2, 0, 1)).transpose(1, 2, 0)

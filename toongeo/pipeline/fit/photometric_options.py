@@ -8,7 +8,7 @@ from toongeo.pipeline.fit.check_positive import check_positive
 
 __all__ = ["PhotometricOptions"]
 
-_COUNTED = ("passes", "max_evaluations", "samples")
+_COUNTED = ("passes", "steps", "max_evaluations", "samples")
 
 
 @dataclass(frozen=True)
@@ -19,9 +19,9 @@ class PhotometricOptions:
     ----------
     independent_samples : float
         How many independent observations a picture is worth that the model explains to within ``noise``: the N of
-        ``w_p = w_r N (noise^2 / v) / v`` in Eq. 3 (Pan et al. 2024), where the variance v of the residuals is
-        estimated in each pass. So a picture that the model explains well counts much, a drawing little. N is far
-        below the number of samples, because the errors of a rendering are alike over whole regions.
+        ``w_p = w_r N (noise / s) / s^2`` in Eq. 3 (Pan et al. 2024), where the standard deviation s of the
+        residuals is estimated in each pass. So a picture that the model explains well counts much, a drawing
+        little. N is far below the number of samples, because the errors of a rendering are alike over whole regions.
     noise : float
         Least standard deviation of a residual, sRGB (0..1), for each channel.
     albedo_weight : float
@@ -38,10 +38,12 @@ class PhotometricOptions:
         Pixel of the resampled picture. 0.6 makes a face about 320 px high.
     blur : float, mm
         Standard deviation of the Gaussian that the picture is smoothed by: about the distance of the samples.
+    steps : int
+        Gauss-Newton steps in a pass.
     tolerance : float
-        Relative change of the loss at which a pass stops.
+        Relative change of the quadratic model of the loss at which the optimizer stops.
     max_evaluations : int
-        Of the loss, in one pass.
+        Of that model, in one step.
 
     Raises
     ------
@@ -49,16 +51,17 @@ class PhotometricOptions:
         If one of them is not a finite positive number.
     """
 
-    independent_samples: float = 3.0
+    independent_samples: float = 20.0
     noise: float = 0.003
-    albedo_weight: float = 1e-5
-    light_weight: float = 1e-4
+    albedo_weight: float = 3e-6
+    light_weight: float = 1e-5
     passes: int = 4
-    samples: int = 2500
+    samples: int = 1500
     resolution: float = 0.6
-    blur: float = 1.0
-    tolerance: float = 1e-5
-    max_evaluations: int = 15
+    blur: float = 0.6
+    steps: int = 1
+    tolerance: float = 1e-7
+    max_evaluations: int = 300
 
     def __post_init__(self) -> None:
         for field in fields(self):

@@ -7,27 +7,28 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from toongeo.geometry.vertex_normals import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.confidence import skin_likelihood
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.gauss_newton_step import gauss_newton_step
 from toongeo.pipeline.fit.landmark_fit import LandmarkFit
 from toongeo.pipeline.fit.landmark_problem import landmark_problem
 from toongeo.pipeline.fit.light_and_albedo import ReducedLoss, best_light, light_penalty
-from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.photometric_loss import Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 from toongeo.pipeline.fit.photometric_samples import PhotometricSamples, photometric_samples
+from toongeo.pipeline.fit.photometric_solution import PhotometricSolution
 from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
 from toongeo.pipeline.fit.solution import Placement
+from toongeo.pipeline.fit.unknowns_of import unknowns_of
 from toongeo.pipeline.fit.visible_samples import visible_samples
 from toongeo.pipeline.fit.without_opposites import without_opposites
 from toongeo.render.srgb import linear_to_srgb
 
-__all__ = ["PhotometricProblem", "PhotometricSolution"]
+__all__ = ["PhotometricProblem"]
 
 Floats = NDArray[np.float64]
 
@@ -40,24 +41,7 @@ _OUTLYING, _OUTLIER = 4.0, 0.05  # scale of the robust loss: standard deviations
 _AMBIENT_ONLY = 1e9  # ridge that leaves no light but the ambient one
 _DARKEST = 0.01  # linear light below which sRGB is taken for as steep as here
 _BESIDE = 2.5  # mm from what is not believed within which a pixel may be mixed with it
-_SKIN = ("cheek_left", "cheek_right", "nose", "forehead")  # where skin is looked for first
-
-
-@dataclass(frozen=True, eq=False)
-class PhotometricSolution:
-    """Geometry and albedo ``z`` and light (9, 3) at the minimum, and how it was reached."""
-
-    z: Floats
-    light: Floats
-    landmark_vertices: NDArray[np.int64]
-    landmark_loss: float
-    prior_loss: float
-    loss: float
-    residuals: tuple[float, float, float]
-    confident_fraction: float
-    status: str
-    passes: int
-    evaluations: int
+_SKIN = ("cheek_left", "cheek_right", "nose")  # where skin is looked for: a fringe may cover the forehead
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +86,7 @@ class PhotometricProblem:
         """The problem for a picture, a landmark fit, its landmarks (68, 2) px and a mask (H, W)."""
         landmarks = landmark_problem(fit.model, pixels, fit_options)
         samples = photometric_samples(fit.model, options.samples)
-        start = _unknowns_of(fit, landmarks)
+        start = unknowns_of(fit, landmarks)
         face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))
         plane = picture_plane(img, mask, landmarks.frame, face, step=options.resolution, blur=options.blur)
         weight = fit.report.prior_weight
@@ -117,7 +101,7 @@ class PhotometricProblem:
         skin = np.isin(frozen.samples.vertices, _skin_vertices(fit.model))
         points = frozen.posed(problem.z0)[skin, :2] + start[landmarks.unknowns.translation]
         likelihood = skin_likelihood(plane, points) * plane.confidence
-        return replace(problem, plane=replace(plane, confidence=likelihood))
+        return replace(problem, plane=_shrunk(replace(plane, confidence=likelihood)))
 
     @property
     def z0(self) -> Floats:
@@ -125,42 +109,42 @@ class PhotometricProblem:
         return np.concatenate([self.start, np.zeros(self.samples.albedo.shape[1])])
 
     def solve(self) -> PhotometricSolution:
-        """Freeze, minimise, and again, as often as the options say."""
+        """Freeze, step, and again, as often as the options say."""
         z, n, bounds = self.z0, self.landmarks.unknowns.size, self._bounds()
         first = frozen = self.frozen(z)
         penalty = self.loss(z, frozen).penalty
-        ambient = self._rms(frozen, *self._lit(frozen, z, _AMBIENT_ONLY * penalty))
-        before = self._rms(frozen, *self._lit(frozen, z, penalty))
-        scale, evaluations = None, 0
+        observed = frozen.observe(z)
+        ambient = self._rms(frozen, _lit(frozen, z, observed, _AMBIENT_ONLY * penalty), observed)
+        before = self._rms(frozen, _lit(frozen, z, observed, penalty), observed)
+        evaluations = 0
         for _ in range(self.options.passes):
             loss = self.loss(z, frozen)
-            scale = 1 / np.sqrt(loss.curvature(z)) if scale is None else scale
-            minimum = nlopt_minimize(
-                loss,
-                z,
-                bounds=bounds,
-                scale=scale,
-                algorithm=_ALGORITHM,
-                tolerance=self.options.tolerance,
-                max_evaluations=self.options.max_evaluations,
-            )
-            z, evaluations = minimum.x, evaluations + minimum.evaluations
+            for _ in range(self.options.steps):
+                step = gauss_newton_step(
+                    loss,
+                    z,
+                    bounds=bounds,
+                    algorithm=_ALGORITHM,
+                    tolerance=self.options.tolerance,
+                    max_evaluations=self.options.max_evaluations,
+                )
+                z, evaluations = step.z, evaluations + step.evaluations
             frozen = self.frozen(z)
         x, _ = loss.full(z)
         after = self._rms(frozen, x, frozen.observe(x))
         if after > before:  # nothing was explained: keep the face of the landmarks, in its best light
             z, frozen, loss, after = self.z0, first, self.loss(self.z0, first), before
-            x, _ = self._lit(first, z, penalty)
+            x = _lit(first, z, observed, penalty)
         return PhotometricSolution(
             z=z,
             light=x[loss.photometric.light].reshape(9, 3),
             landmark_vertices=self._placed(z),
             landmark_loss=loss.geometry.landmark(z[:n])[0],
             prior_loss=loss.geometry.prior_value(z[:n]),
-            loss=loss(z)[0],
+            loss=loss(z),
             residuals=(ambient, before, after),
             confident_fraction=float(frozen.weights.sum()),
-            status=minimum.status,
+            status=step.status,
             passes=self.options.passes,
             evaluations=evaluations,
         )
@@ -170,12 +154,11 @@ class PhotometricProblem:
 
         Weights and slopes depend on the light, and the light on them, so they are found in turn.
         """
-        photometric = frozen
-        ridge = light_penalty(frozen, frozen.observe(z), self.options.light_weight)
+        photometric, observed = frozen, frozen.observe(z)
+        ridge = light_penalty(frozen, observed, self.options.light_weight)
         penalty = ridge
         for _ in range(_REWEIGHTINGS):
-            x, observed = self._lit(photometric, z, penalty)
-            rendered = photometric.rendered(x, observed)
+            rendered = photometric.rendered(_lit(photometric, z, observed, penalty), observed)
             slopes = _srgb_slope((rendered + observed.seen) / 2)
             size = np.linalg.norm(slopes * (rendered - observed.seen), axis=1)
             noise = max(_weighted_median(size, frozen.weights) / _MEDIAN_OF_NORM, self.options.noise)
@@ -198,10 +181,10 @@ class PhotometricProblem:
         What the model does not explain is alike over whole regions, so a larger error also means fewer independent
         observations; their number falls as the variance rises.
         """
-        return self.options.independent_samples * (self.options.noise / noise) ** 2 / noise**2
+        return self.options.independent_samples * self.options.noise / noise**3
 
     def frozen(self, z: Floats) -> PhotometricLoss:
-        """The photometric loss with visibility and normals at ``z``, without robust weights."""
+        """The photometric loss with visibility at ``z``, without robust weights."""
         u, frame, samples = self.landmarks.unknowns, self.landmarks.frame, self.samples
         V = self.model.vertices(z[u.identity], z[u.expression])
         R = frame.rotation(z[: u.size], u)
@@ -222,10 +205,6 @@ class PhotometricProblem:
             weights=weights[rows],
         )
 
-    def _lit(self, loss: PhotometricLoss, z: Floats, penalty: Floats) -> tuple[Floats, Observation]:
-        observed = loss.observe(z)
-        return np.concatenate([z, best_light(loss, observed, penalty).ravel()]), observed
-
     def _rms(self, loss: PhotometricLoss, x: Floats, observed: Observation) -> float:
         """Root mean square difference in sRGB inside the confidence map, over samples and channels."""
         shown = linear_to_srgb(np.clip(loss.rendered(x, observed), 0.0, 1.0))
@@ -243,18 +222,8 @@ class PhotometricProblem:
         return np.concatenate([lower, -albedo]), np.concatenate([upper, albedo])
 
 
-def _unknowns_of(fit: FaceFit, landmarks: LandmarkFit) -> Floats:
-    """The vector of a fit in the frame of its landmark problem; inverse of `CanonicalFrame.camera`."""
-    u, frame = landmarks.unknowns, landmarks.frame
-    x = np.zeros(u.size)
-    x[u.identity], x[u.expression] = fit.identity, fit.expression
-    origin = np.zeros((1, 3))
-    rotation = (fit.camera.view(np.eye(3)) - fit.camera.view(origin)).T
-    scale = np.sqrt((fit.camera.jacobian(origin) ** 2).sum() / 2)  # |s P R|^2 = 2 s^2
-    x[u.rotation] = Rotation.from_matrix(frame.roll.T @ rotation @ frame.rotation0.T).as_rotvec()
-    x[u.log_scale] = np.log(scale / frame.scale)
-    x[u.translation] = frame.from_pixels(fit.camera.project(origin))[0]
-    return x
+def _lit(loss: PhotometricLoss, z: Floats, observed: Observation, penalty: Floats) -> Floats:
+    return np.concatenate([z, best_light(loss, observed, penalty).ravel()])
 
 
 def _skin_vertices(model: MorphableModel) -> NDArray[np.int64]:

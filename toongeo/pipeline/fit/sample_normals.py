@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import bsr_array
 
 from toongeo.geometry._cross import cross
 from toongeo.pipeline.fit.photometric_samples import PhotometricSamples
@@ -17,7 +18,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class SampleNormals:
-    """Unit normals (k, 3), the lengths (k,) of the sums of cross products that they came from, and what a gradient
+    """Unit normals (k, 3), the lengths (k,) of the sums of cross products that they came from, and what a derivative
     needs: the sides (3, 3, t) opposite the corners of the triangles around, coordinates first in the second axis.
     """
 
@@ -26,17 +27,29 @@ class SampleNormals:
     opposite: Floats
     samples: PhotometricSamples
 
-    def pulled_back(self, gradient: Floats, count: int) -> Floats:
-        """Gradient (count, 3) by the vertices from that by the normals (k, 3).
+    def derivative(self, slope: Floats, forces: Floats) -> bsr_array:
+        """Derivative (c k, 3 r) by the vertices of quantities (k, c) that depend on normals and places of the samples.
 
         ``dn = (I - n n^T) dm / |m|``, and each triangle adds ``sum_v dp_v x e_v`` to ``dm``, with the opposite side
         ``e_v``.
+
+        Parameters
+        ----------
+        slope, forces : (k, c, 3) float
+            Derivative by the unit normals, and by the places.
         """
-        tangent = gradient - (gradient * self.units).sum(axis=1, keepdims=True) * self.units
-        along = (tangent / self.lengths[:, None])[self.samples.around].T
-        forces = np.concatenate([cross(side, along) for side in self.opposite], axis=1)
-        at = self.samples.corners.T.ravel()
-        return np.stack([np.bincount(at, row, count) for row in forces], axis=1)
+        samples, count = self.samples, len(self.samples.mean)
+        pairs, which = np.unique(samples.around[:, None] * count + samples.corners, return_inverse=True)
+        sides = self.opposite.transpose(1, 2, 0).reshape(3, -1)
+        sides = np.stack([np.bincount(which.ravel(), row, len(pairs)) for row in sides])  # of both triangles
+        sample, vertex = np.divmod(pairs, count)
+        tangent = slope - (slope * self.units[:, None]).sum(axis=2, keepdims=True) * self.units[:, None]
+        along = (tangent / self.lengths[:, None, None])[sample]
+        blocks = cross(sides[:, :, None], along.transpose(2, 0, 1)).transpose(1, 2, 0)
+        blocks[vertex == samples.own[sample]] += forces
+        starts = np.searchsorted(sample, np.arange(len(samples.own) + 1))
+        blocks = np.ascontiguousarray(blocks, samples.modes.dtype)
+        return bsr_array((blocks, vertex, starts), shape=(slope.shape[1] * len(samples.own), 3 * count))
 
 
 def sample_normals(points: Floats, samples: PhotometricSamples) -> SampleNormals:

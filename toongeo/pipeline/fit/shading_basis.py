@@ -23,10 +23,10 @@ def shading_basis(normals: Floats) -> Floats:
     return sh_basis(normals) * _LOBE
 
 
-def shading_slope(normals: Floats, pull: Floats) -> Floats:
-    """Gradient (k, 3) by the normals from that by the columns (k, 9) of `shading_basis`."""
+def shading_slope(normals: Floats, light: Floats) -> Floats:
+    """Derivative (k, 3) by the normals of shading under this light (9,)."""
     x, y, z = normals.T
-    _, y1, z1, x1, xy, yz, zz, xz, xx = (pull * _LOBE).T
+    _, y1, z1, x1, xy, yz, zz, xz, xx = light * _LOBE
     return np.stack(
         [
             _LINEAR * x1 + _PRODUCT * (xy * y + xz * z + xx * x),

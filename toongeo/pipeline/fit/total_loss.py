@@ -44,3 +44,8 @@ class TotalLoss:
         """Diagonal (n,) of the Gauss-Newton matrix: what the variables are scaled by."""
         landmark = self.landmark_weight * self.landmark.curvature(x)
         return landmark + self.prior_weight * self.prior.curvature(x) + self.nod_weight * self.nod.curvature(x)
+
+    def matrix(self, x: Floats) -> Floats:
+        """The Gauss-Newton matrix (n, n)."""
+        landmark = self.landmark_weight * self.landmark.matrix(x)
+        return landmark + self.prior_weight * np.diag(self.prior.curvature(x)) + self.nod_weight * self.nod.matrix(x)
