@@ -139,12 +139,12 @@ def test_the_matrix_of_the_total_loss_is_that_of_its_residuals(landmark_loss, un
     """Landmarks from their Jacobian; the nod is one squared residual."""
     prior = PriorLoss(unknowns, 0.7, 0.4, mean(unknowns))
     nod = NodLoss(unknowns, landmark_loss.rotation0, 7.0)
-    loss = TotalLoss(landmark_loss, prior, nod, landmark_weight=1.2, prior_weight=0.3)
+    loss = TotalLoss(landmark_loss, prior, nod, landmark_weight=1.2, prior_weight=0.3, nod_weight=0.5)
     J = landmark_loss.jacobian(x)
     expected = 1.2 * 2 / 68 * np.einsum("kin,kij,kjm->nm", J, landmark_loss.weights, J)
     expected += 0.3 * np.diag(np.repeat([1.4, 0.8, 0.0], [unknowns.n_identity, unknowns.n_expression, 6]))
     value, slope = nod(x)  # L = r^2: its matrix 2 r' r'^T is g g^T / (2 L)
-    expected += 0.3 * np.outer(slope, slope) / (2 * value)
+    expected += 0.5 * np.outer(slope, slope) / (2 * value)
     np.testing.assert_allclose(loss.matrix(x), expected, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(np.diag(loss.matrix(x)), loss.curvature(x), rtol=1e-9)
 
