@@ -25,7 +25,7 @@ class FaceCrop:
     ----------
     pixels : (size, size, 3) uint8 RGB
     inside : (size, size) bool
-        Where the picture is; the rest lies beyond its border.
+        Where nothing from beyond the border of the picture is mixed in.
     corner : (2,) float, px of the picture
         Pixel centre of the picture that becomes the first of the crop.
     scale : float
@@ -68,6 +68,7 @@ def face_crop(img: NDArray[np.uint8], landmarks: NDArray[np.float64], size: int 
     pixels = np.asarray(cv2.resize(large, (size, size), interpolation=cv2.INTER_AREA), np.uint8)
     corner = edge - 0.5 + 0.5 / scale
     x, y = (corner[k] + np.arange(size) / scale for k in range(2))
+    reach = 0.5 / scale * (1 - 1 / finer)  # from the centre of a block to that of its outermost sample
     height, width = img.shape[:2]
-    inside = ((y >= 0) & (y <= height - 1))[:, None] & ((x >= 0) & (x <= width - 1))
+    inside = ((y >= reach) & (y <= height - 1 - reach))[:, None] & ((x >= reach) & (x <= width - 1 - reach))
     return FaceCrop(pixels, inside, corner, scale)

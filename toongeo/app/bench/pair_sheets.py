@@ -50,8 +50,8 @@ def pair_sheets(folder: Path, output: Path, *, seed: int = 0, against: str = "co
     seed : int
         Of the shuffles; choose one that the judges do not know.
     against : {"coarse", "adjust"}
-        The baseline: the coarse fit, or that with identity and expression bent onto the landmarks without a prior, which
-        meets them at any price and is a weak rival to the eye.
+        The baseline: the coarse fit, or that with identity and expression bent onto the landmarks without a
+        prior, which meets them at any price and is a weak rival to the eye.
     tile : int
         Side of one view, px.
 
