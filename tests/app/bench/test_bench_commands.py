@@ -52,6 +52,15 @@ def test_errors_do_not_depend_on_the_resolution(cartoon):
     assert small["adjust id+exp"]["total"] < small["adjust exp"]["total"] < small["coarse"]["total"]
 
 
+def test_table2_prints_what_adjusting_reaches(folder, capsys):
+    (folder / "moustache_man.png").unlink()
+    assert main(["bench", "table2", str(folder)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    methods = ["mean face", "coarse", "adjust exp", "adjust id+exp", "fine"]
+    assert [line[: len(method)] for line, method in zip(lines[3:], methods, strict=False)] == methods
+    assert lines[-1].startswith("total, paper: adjust exp 143.38, adjust id+exp 110.70, fine 37.44")
+
+
 def test_table4_adds_up(folder, tmp_path, capsys):
     (folder / "moustache_man.png").unlink()
     assert main(["bench", "table4", str(folder), "-o", str(tmp_path)]) == 0

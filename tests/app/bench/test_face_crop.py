@@ -33,9 +33,8 @@ def test_the_crop_is_the_square_of_the_metric():
     corner, side = face_square(points)
     crop = face_crop(np.zeros((100, 100, 3), np.uint8), points)
     assert crop.scale == pytest.approx(224 / side)
-    assert crop.corner == pytest.approx(
-        corner - 0.5 + 0.5 / crop.scale
-    )  # its edge is the first pixel's, not its centre
+    # The square begins at the edge of a pixel.
+    assert crop.corner == pytest.approx(corner - 0.5 + 0.5 / crop.scale)
 
 
 def test_what_lies_beyond_the_picture_is_told():
