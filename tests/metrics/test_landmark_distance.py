@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from toongeo.metrics import landmark_distance
-from toongeo.metrics.landmark_distance import CROP_PX, TABLE_PARTS, face_square
+from toongeo.metrics import face_square, landmark_distance
+from toongeo.metrics.landmark_distance import CROP_PX, TABLE_PARTS
 
 
 @pytest.fixture
@@ -65,3 +65,9 @@ def test_missing_points_are_left_out(truth):
 def test_bad_input_is_named(truth, change, message):
     with pytest.raises(ValueError, match=message):
         landmark_distance(**({"predicted": truth, "truth": truth} | change))
+
+
+@pytest.mark.parametrize("points", [np.zeros((68, 3)), np.full((68, 2), np.inf)])
+def test_a_square_needs_68_points(points):
+    with pytest.raises(ValueError, match=r"landmarks: expected finite or NaN values of shape \(68, 2\)"):
+        face_square(points)

@@ -8,13 +8,12 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.metrics.face_square import face_square
 from toongeo.metrics.landmark_error import IBUG68_PARTS
 
-__all__ = ["CROP_PX", "TABLE_PARTS", "face_square", "landmark_distance"]
+__all__ = ["CROP_PX", "TABLE_PARTS", "landmark_distance"]
 
 CROP_PX = 224  # side of the crops of Pan et al. 2024
-MARGIN = 1.7  # side of the crop / greater side of the landmarks' bounding box
-RAISED = 0.12  # of the side: the landmarks leave out the forehead
 # The columns of Pan et al.'s Table 1.
 TABLE_PARTS: Mapping[str, range] = MappingProxyType(
     {
@@ -59,37 +58,6 @@ def landmark_distance(predicted: ArrayLike, truth: ArrayLike) -> dict[str, float
         known = distance[points][np.isfinite(distance[points])]
         means[part] = float(known.mean()) if len(known) else float("nan")
     return means
-
-
-def face_square(landmarks: ArrayLike) -> tuple[NDArray[np.float64], float]:
-    """Upper left corner (2,) and side, px, of the square around a face that is the crop.
-
-    Parameters
-    ----------
-    landmarks : (68, 2) float, px
-        NaN rows are missing.
-
-    Raises
-    ------
-    ValueError
-        If the shape is wrong, a value infinite, or the points coincide or are all missing.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> points = np.zeros((68, 2))
-    >>> points[1:] = 100, 80
-    >>> corner, side = face_square(points)
-    >>> corner.round(6), side
-    (array([-35. , -65.4]), 170.0)
-    """
-    points = _points("landmarks", landmarks)
-    points = points[np.isfinite(points).all(axis=1)]
-    extent = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
-    if not extent > 0:
-        raise ValueError("landmarks: expected points that span a face, got them all missing or in one place")
-    side = MARGIN * extent
-    return (points.min(axis=0) + points.max(axis=0)) / 2 - side / 2 - [0.0, RAISED * side], side
 
 
 def _points(name: str, values: ArrayLike) -> NDArray[np.float64]:

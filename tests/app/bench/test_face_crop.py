@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toongeo.app.bench.face_crop import PAPER, face_crop
-from toongeo.metrics.landmark_distance import face_square
+from toongeo.metrics import face_square
 from toongeo.render import ScaledOrthographicCamera
 
 

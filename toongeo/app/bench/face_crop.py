@@ -9,7 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.metrics.landmark_distance import CROP_PX, face_square
+from toongeo.metrics import face_square
+from toongeo.metrics.landmark_distance import CROP_PX
 from toongeo.protocols import HeadCamera
 
 __all__ = ["FaceCrop", "face_crop"]
