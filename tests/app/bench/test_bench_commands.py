@@ -111,6 +111,14 @@ def test_bad_folders_are_one_line_and_exit_code_2(command, folder, tmp_path, cap
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("command", ["table1", "table2", "table4", "pairs"])
+def test_an_output_that_is_a_file_is_refused_before_the_work(command, folder, tmp_path, capsys):
+    (tmp_path / "out").write_text("precious")
+    assert main(["bench", command, str(folder), "-o", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.startswith("toongeo: output: expected a folder, got the file ")
+    assert (tmp_path / "out").read_text() == "precious"
+
+
 @pytest.mark.parametrize("command", ["table1", "pairs"])
 def test_a_picture_that_cannot_be_used_is_named(command, folder, tmp_path, capsys):
     (folder / "blue_girl.pts").unlink()

@@ -38,6 +38,12 @@ def _add_folder(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, metavar="FOLDER", help=about)
 
 
+def _check_output(output: Path | None) -> None:
+    """Refuse before the work what could not be written after it."""
+    if output is not None and output.exists() and not output.is_dir():
+        raise NotADirectoryError(f"output: expected a folder, got the file {output}")
+
+
 # The commands import what they need when they run, so that `toongeo --help` answers at once.
 
 
@@ -45,6 +51,7 @@ def _table1(options: argparse.Namespace) -> None:
     from toongeo.app.bench.save_table import save_table
     from toongeo.app.bench.tables import table1
 
+    _check_output(options.output)
     save_table(table1(options.folder, options.eos), "table1", options.output)
 
 
@@ -52,6 +59,7 @@ def _table2(options: argparse.Namespace) -> None:
     from toongeo.app.bench.save_table import save_table
     from toongeo.app.bench.tables import table2
 
+    _check_output(options.output)
     save_table(table2(options.folder, options.eos), "table2", options.output)
 
 
@@ -59,12 +67,14 @@ def _table4(options: argparse.Namespace) -> None:
     from toongeo.app.bench.save_table import save_table
     from toongeo.app.bench.tables import table4
 
+    _check_output(options.output)
     save_table(table4(options.folder), "table4", options.output)
 
 
 def _pairs(options: argparse.Namespace) -> None:
     from toongeo.app.bench.pair_sheets import KEY, QUESTIONS, pair_sheets
 
+    _check_output(options.output)
     sheets = pair_sheets(options.folder, options.output, seed=options.seed, against=options.against)
     print(f"wrote {len(sheets)} sheets, answers.csv and {KEY} to {options.output}")
     print("Answer A or B for each sheet and question; leave the key closed until all answers are in:")
