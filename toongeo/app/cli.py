@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from toongeo import __version__
+from toongeo.app.bench.commands import add_bench
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -44,6 +45,7 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
+    add_bench(commands)
     return parser
 
 

@@ -1,0 +1,103 @@
+"""Bars of several methods, drawn with OpenCV."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.app.bench.bench_table import BenchTable
+
+__all__ = ["bar_chart"]
+
+INK, GRID, PAPER = (40, 40, 40), (222, 222, 222), 255
+# Colours that differ in brightness too, for those who do not tell them by hue.
+COLOURS = ((170, 170, 170), (95, 95, 95), (86, 180, 233), (230, 159, 0), (204, 121, 167), (0, 114, 78))
+BAR, GAP, NARROWEST = 22, 26, 84  # px: a bar, between groups, a group with its name
+HEIGHT, TOP, BOTTOM, LEFT, BETWEEN = 320, 88, 46, 64, 84
+TICKS = 5
+FONT, SIZE = cv2.FONT_HERSHEY_SIMPLEX, 0.45
+
+
+def bar_chart(table: BenchTable) -> NDArray[np.uint8]:
+    """Means as bars with whiskers of one standard deviation; a panel with its own scale for each unit.
+
+    Returns
+    -------
+    (H, W, 3) uint8 RGB
+    """
+    methods = list(table.values)
+    group = max(len(methods) * BAR + GAP, NARROWEST)
+    widths = [max(len(columns) * group, _text_width(unit)) for unit, columns in table.panels.items()]
+    legend = LEFT + sum(_text_width(f"{method}    ") + BAR for method in methods)
+    bars = LEFT + sum(widths) + BETWEEN * (len(widths) - 1) + GAP
+    width = max(bars, legend, LEFT + _text_width(table.title) + GAP)
+    canvas = np.full((TOP + HEIGHT + BOTTOM, width, 3), PAPER, np.uint8)
+    _write(canvas, table.title, LEFT, 22)
+    x = LEFT
+    for method, colour in zip(methods, _colours(len(methods)), strict=True):
+        cv2.rectangle(canvas, (x, 34), (x + 14, 46), colour, -1)
+        _write(canvas, method, x + 20, 45)
+        x += _text_width(f"{method}    ") + BAR
+    left, first = LEFT, 0
+    for (unit, columns), wide in zip(table.panels.items(), widths, strict=True):
+        which = slice(first, first + len(columns))
+        _panel(canvas, table, unit, columns, which, (left, wide, group))
+        left, first = left + wide + BETWEEN, first + len(columns)
+    return canvas
+
+
+def _panel(
+    canvas: NDArray[np.uint8],
+    table: BenchTable,
+    unit: str,
+    columns: tuple[str, ...],
+    which: slice,
+    place: tuple[int, int, int],
+) -> None:
+    left, wide, group = place
+    means = np.array([table.mean(method)[which] for method in table.values])
+    spreads = np.nan_to_num([table.deviation(method)[which] for method in table.values])
+    step = _round_step(float(np.nanmax(means + spreads, initial=0.0)) / TICKS)
+    base, px = TOP + HEIGHT, HEIGHT / (step * TICKS)
+    _write(canvas, unit, left, TOP - 14)
+    for k in range(TICKS + 1):
+        y, label = round(base - k * step * px), f"{k * step:.4g}"
+        cv2.line(canvas, (left, y), (left + wide, y), INK if k == 0 else GRID, 1)
+        _write(canvas, label, left - 8 - _text_width(label), y + 5)
+    for k, column in enumerate(columns):
+        middle = left + k * group + group // 2
+        _write(canvas, column, middle - _text_width(column) // 2, base + 22)
+        for i, colour in enumerate(_colours(len(means))):
+            if np.isfinite(means[i, k]):
+                x = middle - len(means) * BAR // 2 + i * BAR
+                _bar(canvas, x, base, means[i, k] * px, spreads[i, k] * px, colour)
+
+
+def _bar(canvas: NDArray[np.uint8], x: int, base: int, mean: float, spread: float, colour: tuple[int, ...]) -> None:
+    cv2.rectangle(canvas, (x + 2, round(base - mean)), (x + BAR - 3, base), colour, -1)
+    low, high, middle = round(base - max(mean - spread, 0)), round(base - mean - spread), x + BAR // 2 - 1
+    if spread > 0:
+        cv2.line(canvas, (middle, low), (middle, high), INK, 1)
+        cv2.line(canvas, (middle - 3, high), (middle + 3, high), INK, 1)
+
+
+def _colours(count: int) -> list[tuple[int, int, int]]:
+    """The last method is ours and has the last colour."""
+    return [*COLOURS[: count - 1], COLOURS[-1]]
+
+
+def _round_step(least: float) -> float:
+    """The smallest of 1, 2, 2.5, 5 times a power of ten that is not below; 1 if there is nothing to show."""
+    if not least > 0:
+        return 1.0
+    power = 10.0 ** np.floor(np.log10(least))
+    return float(next(factor * power for factor in (1, 2, 2.5, 5, 10) if factor * power >= least * (1 - 1e-9)))
+
+
+def _text_width(text: str) -> int:
+    return int(cv2.getTextSize(text, FONT, SIZE, 1)[0][0])
+
+
+def _write(canvas: NDArray[np.uint8], text: str, x: int, y: int) -> None:
+    cv2.putText(canvas, text, (x, y), FONT, SIZE, INK, 1, cv2.LINE_AA)

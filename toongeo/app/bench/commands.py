@@ -1,0 +1,87 @@
+"""The arguments of ``toongeo bench``."""
+
+import argparse
+from pathlib import Path
+
+__all__ = ["add_bench"]
+
+
+def add_bench(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Add ``bench`` to the commands of ``toongeo``."""
+    bench = commands.add_parser("bench", help="tables of errors and seconds over a folder, and blind pairs to judge")
+    benches = bench.add_subparsers(required=True, metavar="TABLE")
+    for name, about, run in (
+        ("table1", "landmark and photometric error, coarse and fine", _table1),
+        ("table2", "the same with adjusted coefficients", _table2),
+        ("table4", "seconds a stage", _table4),
+    ):
+        table = benches.add_parser(name, help=about)
+        _add_folder(table)
+        table.add_argument("-o", "--output", type=Path, metavar="OUT", help="folder for a CSV file and a chart")
+        if name != "table4":
+            table.add_argument("--eos", type=Path, metavar="MODELS", help="compare eos-py too, with its model files")
+        table.set_defaults(run=run)
+    pairs = benches.add_parser("pairs", help="blind sheets of two faces, with a hidden key and an answer form")
+    _add_folder(pairs)
+    pairs.add_argument("-o", "--output", type=Path, required=True, metavar="OUT")
+    pairs.add_argument("--seed", type=int, default=0, metavar="N", help="of the shuffles (default 0)")
+    pairs.add_argument("--against", choices=("coarse", "adjust"), default="coarse", help="the rival (default coarse)")
+    pairs.set_defaults(run=_pairs)
+    score = benches.add_parser("score", help="count the answers to the pairs")
+    score.add_argument("answers", type=Path, metavar="ANSWERS", help="the form, filled in")
+    score.add_argument("key", type=Path, metavar="KEY", help=".key.json of the pairs")
+    score.set_defaults(run=_score)
+
+
+def _add_folder(parser: argparse.ArgumentParser) -> None:
+    about = "pictures with landmarks of the same name beside them (.pts, .txt, .csv or .npy)"
+    parser.add_argument("folder", type=Path, metavar="FOLDER", help=about)
+
+
+def _check_output(output: Path | None) -> None:
+    """Refuse before the work what could not be written after it."""
+    if output is not None and output.exists() and not output.is_dir():
+        raise NotADirectoryError(f"output: expected a folder, got the file {output}")
+
+
+# The commands import what they need when they run, so that `toongeo --help` answers at once.
+
+
+def _table1(options: argparse.Namespace) -> None:
+    from toongeo.app.bench.save_table import save_table
+    from toongeo.app.bench.tables import table1
+
+    _check_output(options.output)
+    save_table(table1(options.folder, options.eos), "table1", options.output)
+
+
+def _table2(options: argparse.Namespace) -> None:
+    from toongeo.app.bench.save_table import save_table
+    from toongeo.app.bench.tables import table2
+
+    _check_output(options.output)
+    save_table(table2(options.folder, options.eos), "table2", options.output)
+
+
+def _table4(options: argparse.Namespace) -> None:
+    from toongeo.app.bench.save_table import save_table
+    from toongeo.app.bench.tables import table4
+
+    _check_output(options.output)
+    save_table(table4(options.folder), "table4", options.output)
+
+
+def _pairs(options: argparse.Namespace) -> None:
+    from toongeo.app.bench.pair_sheets import KEY, QUESTIONS, pair_sheets
+
+    _check_output(options.output)
+    sheets = pair_sheets(options.folder, options.output, seed=options.seed, against=options.against)
+    print(f"wrote {len(sheets)} sheets, answers.csv and {KEY} to {options.output}")
+    print("Answer A or B for each sheet and question; leave the key closed until all answers are in:")
+    print("\n".join(f"  {question}: {words}" for question, words in QUESTIONS.items()))
+
+
+def _score(options: argparse.Namespace) -> None:
+    from toongeo.app.bench.score_answers import preferences_text, score_answers
+
+    print(preferences_text(score_answers(options.answers, options.key)))

@@ -1,0 +1,50 @@
+"""An avatar of a fitted face that was not aligned: the rival in pair sheets."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.avatar import Avatar
+from toongeo.avatar_report import AvatarReport, landmark_errors
+from toongeo.metrics import mesh_quality
+from toongeo.pipeline import (
+    AlignedFace,
+    FaceFit,
+    bake_eyes,
+    bake_texture,
+    build_rig,
+    clear_lids,
+    close_lids,
+    fit_eyes,
+)
+from toongeo.protocols import FaceParse
+
+__all__ = ["plain_avatar"]
+
+
+def plain_avatar(
+    img: NDArray[np.uint8], landmarks: NDArray[np.float64], fit: FaceFit, parse: FaceParse, *, texture_size: int = 1024
+) -> Avatar:
+    """Rig, eyes and texture as `make_avatar` makes them, on the face of a fit as it is.
+
+    Parameters
+    ----------
+    img : (H, W, 3) uint8 RGB
+    landmarks : (68, 2) float, px
+    fit : FaceFit
+        From `fit_3dmm` or `adjust_coefficients`.
+    parse : FaceParse
+        Of the same picture.
+    texture_size : int
+        Side of the atlas, texels.
+    """
+    face = AlignedFace(fit.vertices, fit.camera, fit.landmark_vertices, fit.model, fit, report={})
+    rig = close_lids(face, build_rig(face))
+    eyes = fit_eyes(face, rig)
+    rig = clear_lids(face, rig, eyes)
+    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
+    errors = landmark_errors(fit, landmarks)
+    quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
+    report = AvatarReport(coarse=errors, aligned=errors, quality=quality, seconds={}, warnings=())
+    return Avatar(fit=fit, parse=parse, face=face, rig=rig, eyes=eyes, texture=texture, report=report)

@@ -1,0 +1,123 @@
+"""``toongeo bench score``: which face of the pairs people preferred."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from scipy.stats import binomtest
+
+from toongeo.app.bench.pair_sheets import QUESTIONS
+
+__all__ = ["Preference", "preferences_text", "score_answers"]
+
+COLUMNS = ("picture", "question", "answer")
+SIDES = {"ours", "baseline"}
+
+
+@dataclass(frozen=True)
+class Preference:
+    """Answers to one question.
+
+    Attributes
+    ----------
+    question : str
+    ours, baseline : int
+        How often each was preferred.
+    p_value : float
+        Of so uneven a split or a more uneven one, if either were chosen with probability 1/2 (exact, two-sided); 1
+        without answers. The test takes the answers for independent, which those of several people to one sheet are
+        not quite.
+    """
+
+    question: str
+    ours: int
+    baseline: int
+    p_value: float
+
+
+def score_answers(answers: Path, key: Path) -> list[Preference]:
+    """Count the answers, with the key that tells which face is ours.
+
+    Parameters
+    ----------
+    answers : Path
+        CSV with the columns picture, question and answer (A or B; empty: not answered). Forms of several people may
+        stand beneath each other in it.
+    key : Path
+        ``.key.json`` as `pair_sheets` wrote it.
+
+    Returns
+    -------
+    list of Preference
+        For each question.
+
+    Raises
+    ------
+    ValueError
+        If a file is not of its kind, or a line names an unknown picture, question or answer, or nothing is answered.
+    OSError
+        If a file cannot be read.
+    """
+    sides = _sides(key)
+    counts = {question: {side: 0 for side in SIDES} for question in QUESTIONS}
+    for where, picture, question, answer in _answered(answers):
+        for name, value, known in (
+            ("picture", picture, sides), ("question", question, counts), ("answer", answer, ("A", "B")),
+        ):  # fmt: skip
+            if value not in known:
+                raise ValueError(f"answers: expected {name} one of {', '.join(known)}, got {value!r} in {where}")
+        counts[question][sides[picture][answer]] += 1
+    if not any(sum(count.values()) for count in counts.values()):
+        raise ValueError(f"answers: expected at least one answer A or B, got none in {answers}")
+    return [_preference(question, **count) for question, count in counts.items()]
+
+
+def preferences_text(preferences: list[Preference]) -> str:
+    """A line a question."""
+    lines = [f"{'question':<12}{'ours':>6}{'baseline':>10}{'share':>9}{'p':>10}"]
+    for found in preferences:
+        count = found.ours + found.baseline
+        share = f"{100 * found.ours / count:.1f} %" if count else "-"
+        lines.append(f"{found.question:<12}{found.ours:>6}{found.baseline:>10}{share:>9}{found.p_value:>10.3g}")
+    return "\n".join([*lines, "share: preferred ours; p: exact two-sided binomial test against 1/2"])
+
+
+def _preference(question: str, ours: int, baseline: int) -> Preference:
+    p_value = float(binomtest(ours, ours + baseline).pvalue) if ours + baseline else 1.0
+    return Preference(question, ours, baseline, p_value)
+
+
+def _sides(key: Path) -> dict[str, dict[str, str]]:
+    """Sheet -> letter -> whose face."""
+    try:
+        pairs = json.loads(key.read_text(encoding="utf-8"))["pairs"]
+        sides = {name: {letter: pair[letter] for letter in "AB"} for name, pair in pairs.items()}
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise ValueError(f"key: expected the key that `toongeo bench pairs` wrote, got {key}") from None
+    if not sides or any(set(pair.values()) != SIDES for pair in sides.values()):
+        raise ValueError(f"key: expected ours and baseline for the letters of each pair, got others in {key}")
+    return sides
+
+
+def _answered(path: Path) -> list[tuple[str, str, str, str]]:
+    """Where it stands, picture, question and answer of each line with an answer."""
+    try:
+        rows = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f"answers: expected a CSV file, but {path} is not ({error})") from error
+    if not rows or tuple(cell.strip() for cell in rows[0]) != COLUMNS:
+        got = ",".join(rows[0]) if rows else "nothing"
+        raise ValueError(f"answers: expected the heading {','.join(COLUMNS)}, got {got[:60]!r} in {path}")
+    found = []
+    for number, row in enumerate(rows[1:], start=2):
+        cells, where = [cell.strip() for cell in row], f"line {number} of {path}"
+        if not any(cells) or tuple(cells) == COLUMNS:  # an empty line, or the heading of another form
+            continue
+        if len(cells) != len(COLUMNS):
+            raise ValueError(f"answers: expected {len(COLUMNS)} cells, got {len(cells)} in {where}")
+        if cells[2]:
+            found.append((where, cells[0], cells[1].lower(), cells[2].upper()))
+    return found
