@@ -17,6 +17,18 @@ def test_make_writes_what_it_says(tmp_path, capsys):
     assert str(out) in printed and "self-intersect" in printed and "inner51" in printed
 
 
+def test_make_crops_snaps_and_refines(tmp_path, capsys):
+    whole, face = tmp_path / "whole.ply", tmp_path / "face.ply"
+    arguments = ["make", str(PICTURE), "--landmarks", str(POINTS), "--texture-size", "64"]
+    assert main([*arguments, "-o", str(whole)]) == 0
+    before = capsys.readouterr().out
+    assert main([*arguments, "-o", str(face), "--crop", "face", "--snap", "--photometric"]) == 0
+    after = capsys.readouterr().out
+    assert face.stat().st_size < 0.8 * whole.stat().st_size
+    inner = [next(line for line in text.splitlines() if line.startswith("inner51")) for text in (before, after)]
+    assert inner[0] != inner[1]  # another fit, to other eye points
+
+
 def test_demo_writes_its_four_kinds_of_file(tmp_path, capsys):
     assert main(["demo", "-o", str(tmp_path / "demo")]) == 0
     names = {path.name for path in (tmp_path / "demo").iterdir()}

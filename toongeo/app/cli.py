@@ -41,6 +41,9 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--landmarks", type=Path, required=True, metavar="FILE", help=".pts, .npy, .csv or .txt")
     make.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, .obj or .ply")
     make.add_argument("--texture-size", type=int, default=1024, metavar="N", help="side of the atlas (default 1024)")
+    make.add_argument("--crop", choices=("head", "bust", "face"), default="head", help="what to write (default head)")
+    make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
+    make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
     make.set_defaults(run=_make)
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
@@ -55,7 +58,15 @@ def _parser() -> argparse.ArgumentParser:
 def _make(options: argparse.Namespace) -> None:
     from toongeo.app.make import make
 
-    make(options.image, options.landmarks, options.output, options.texture_size)
+    make(
+        options.image,
+        options.landmarks,
+        options.output,
+        texture_size=options.texture_size,
+        crop=options.crop,
+        snap=options.snap,
+        photometric=options.photometric,
+    )
 
 
 def _demo(options: argparse.Namespace) -> None:

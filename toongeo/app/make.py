@@ -5,12 +5,24 @@ from pathlib import Path
 from tqdm import tqdm
 
 from toongeo.avatar import WRITERS, Avatar
+from toongeo.crop_faces import Crop
 from toongeo.io import read_image, read_landmarks
 from toongeo.make_avatar import STAGES, make_avatar
 
 
-def make(image: Path, landmarks: Path, output: Path, texture_size: int = 1024) -> Avatar:
+def make(
+    image: Path,
+    landmarks: Path,
+    output: Path,
+    *,
+    texture_size: int = 1024,
+    crop: Crop = "head",
+    snap: bool = False,
+    photometric: bool = False,
+) -> Avatar:
     """Read, build, save and report, with a progress line a stage.
+
+    The options are those of :func:`toongeo.make_avatar` and of :meth:`toongeo.Avatar.save`.
 
     Raises
     ------
@@ -28,10 +40,12 @@ def make(image: Path, landmarks: Path, output: Path, texture_size: int = 1024) -
             bar.update(STAGES.index(stage) - bar.n)
             bar.set_description(stage)
 
-        avatar = make_avatar(img, points, texture_size=texture_size, progress=announce)
+        avatar = make_avatar(
+            img, points, snap=snap, photometric=photometric, texture_size=texture_size, progress=announce
+        )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")
-    avatar.save(output)
+    avatar.save(output, crop=crop)
     print("\n".join(avatar.report.lines()))
     print(f"wrote {output}")
     return avatar
