@@ -23,6 +23,7 @@ from toongeo.pipeline import (
     photometric_fit,
     snap_eyes,
 )
+from toongeo.pipeline.rig.line_sockets import line_sockets
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
 
@@ -93,7 +94,7 @@ def make_avatar(
     rig = close_lids(face, build_rig(face))
     clock.start("eyes")
     eyes = fit_eyes(face, rig)
-    rig = clear_lids(face, rig, eyes)
+    rig = line_sockets(face, clear_lids(face, rig, eyes), eyes)
     clock.start("texture")
     texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
     clock.start("report")

@@ -74,3 +74,18 @@ def test_gaze_turns_the_eyeball_about_its_centre(avatar):
     radius = np.linalg.norm(turned - avatar.eyes.centres[0], axis=1)
     np.testing.assert_allclose(radius, avatar.eyes.radii[0], rtol=1e-6)  # the unit sphere is stored in float32
     assert turned[0, 0] > rest[0, 0] + 0.4 * avatar.eyes.radii[0]
+
+
+def test_no_skin_is_inside_the_eyeball_of_a_narrowed_eye(cartoon):
+    """Landmarks of an eye drawn as a slit leave no room for the eyeball that belongs to its width."""
+    img, landmarks = cartoon("moustache_man")
+    for lids in (slice(36, 42), slice(42, 48)):
+        corners = landmarks[lids][[0, 3]]
+        landmarks[lids, 1] = corners[:, 1].mean() + 0.1 * (landmarks[lids, 1] - corners[:, 1].mean())
+    landmarks[36:48, 1] += 0.12 * np.ptp(landmarks[36:48, 0])  # slits, down on the cheeks
+    face = align_face(fit_3dmm(img, landmarks), landmarks)
+    eyes = fit_eyes(face, build_rig(face))
+    skin = face.vertices[face.region("skin")]
+    for centre, radius in zip(eyes.centres, eyes.radii, strict=True):
+        offset = skin - centre
+        assert np.linalg.norm(offset[offset[:, 2] > 0], axis=1).min() >= radius

@@ -4,9 +4,11 @@ import dataclasses
 import time
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from toongeo.geometry import laplacian_align
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.align.rim_anchors import rim_path
 from toongeo.pipeline.rig.build_rig import Rig
 
@@ -48,12 +50,16 @@ def _closed(face: AlignedFace, side: str, V: np.ndarray) -> np.ndarray:
     used, local = np.unique(face.faces[patch], return_inverse=True)
     border = np.intersect1d(used, face.faces[~patch])  # where the patch is joined to the rest
     still = np.union1d(border, lower)
-    moving = np.setdiff1d(upper, still)
+    # The edge of the upper lid has a thickness: its inner side comes to lie behind the lower lid, not before it.
+    edge = np.setdiff1d(opening_rim(face.model, f"socket_{side}"), np.union1d(still, upper))
+    moving = np.r_[np.setdiff1d(upper, still), edge]
     # Upper and lower rim are paired by how far along the eye they are, from corner to corner.
     along = V[upper[-1]] - V[upper[0]]
     at_lower, at_upper = V[lower] @ along, V[moving] @ along
     order = np.argsort(at_lower)
     targets = np.column_stack([np.interp(at_upper, at_lower[order], V[lower][order, axis]) for axis in range(3)])
+    thickness = cKDTree(V[upper]).query(V[edge])[0]
+    targets[len(moving) - len(edge) :, 2] -= thickness
     closed = V.copy()
     closed[used] = laplacian_align(
         V[used],

@@ -94,7 +94,8 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
         lids = np.union1d(lids, rim)
         blink = rig.deltas[rig.names.index(f"eyeBlink{name.capitalize()}"), lids]
         path = face.vertices[lids] + BLINK_WEIGHTS[:, None, None] * blink
-        inset = _inset(path.reshape(-1, 3) - centre, radius * (1 + CLEARANCE))
+        points = np.vstack([path.reshape(-1, 3), around])
+        inset = _inset(points - centre, radius * (1 + CLEARANCE))
         centres[side], radii[side] = centre - inset * GAZE, radius
         report[f"inset_{name}_mm"] = inset
     report["seconds"] = time.perf_counter() - started
