@@ -1,5 +1,6 @@
 """Every stage in order: one picture and its landmarks in, an avatar out."""
 
+import dataclasses
 import time
 from collections.abc import Callable
 
@@ -95,6 +96,7 @@ def make_avatar(
     clock.start("eyes")
     eyes = fit_eyes(face, rig)
     rig = line_sockets(face, clear_lids(face, rig, eyes), eyes)
+    face = dataclasses.replace(face, vertices=rig.neutral)
     clock.start("texture")
     texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
     clock.start("report")
