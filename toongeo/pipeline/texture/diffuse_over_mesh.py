@@ -34,21 +34,20 @@ def diffuse_over_mesh(F: np.ndarray, colours: np.ndarray, known: np.ndarray) -> 
     >>> filled.ravel(), rings
     (array([4., 2., 3., 2.]), array([0, 0, 1, 1]))
     """
-    return diffused(adjacency(F, len(colours)), colours, known)
+    return diffused(adjacency(F, len(colours)), colours, known, len(colours))
 
 
-def diffused(edges: sp.csr_array, colours: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """:func:`diffuse_over_mesh` for edges (n, n) that are at hand."""
+def diffused(edges: sp.csr_array, colours: np.ndarray, known: np.ndarray, reach: int) -> tuple[np.ndarray, np.ndarray]:
+    """:func:`diffuse_over_mesh` for edges (n, n) that are at hand, and no farther than ``reach`` rings."""
     filled = np.array(colours, float)
     rings = np.where(known, 0, -1)
     visited = np.column_stack([np.where(known[:, None], filled, 0), known])
-    ring = 0
-    while True:
-        ring += 1
+    for ring in range(1, reach + 1):
         total = edges @ visited
         frontier = np.flatnonzero((rings < 0) & (total[:, -1] > 0))
         if not len(frontier):
-            return filled, rings
+            break
         filled[frontier] = total[frontier, :-1] / total[frontier, -1:]
         visited[frontier, :-1], visited[frontier, -1] = filled[frontier], 1
         rings[frontier] = ring
+    return filled, rings

@@ -9,7 +9,7 @@ import scipy.sparse as sp
 from toongeo.geometry import adjacency
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.texture.diffuse_over_mesh import diffuse_over_mesh, diffused
+from toongeo.pipeline.texture.diffuse_over_mesh import diffused
 from toongeo.pipeline.texture.face_picture import FacePicture
 from toongeo.render import sample_image
 
@@ -88,7 +88,7 @@ def _blurred_at(picture: FacePicture, mask: np.ndarray) -> np.ndarray:
 
 def _spread(edges: sp.csr_array, values: np.ndarray, known: np.ndarray, far: np.ndarray) -> np.ndarray:
     """Values diffused from known vertices, fading to ``far``, and smoothed where unknown."""
-    filled, rings = diffused(edges, values, known)
+    filled, rings = diffused(edges, values, known, FADE_RINGS)
     fade = np.clip(rings / FADE_RINGS, 0, 1)[:, None]
     filled = np.where(rings[:, None] < 0, far, (1 - fade) * filled + fade * far)
     return _smooth(edges, filled, ~known, SMOOTHING)
@@ -143,6 +143,6 @@ def _matched(colours: np.ndarray, model_skin: np.ndarray, skin: np.ndarray) -> n
 
 def _inner_rims(F: np.ndarray, colours: np.ndarray, outside: np.ndarray) -> np.ndarray:
     """Colours whose inner sides of lids and lips begin with the colour of the skin they continue."""
-    near, rings = diffuse_over_mesh(F, colours, outside)
+    near, rings = diffused(adjacency(F, len(colours)), colours, outside, INNER_RINGS)
     share = np.where(rings < 0, 0.0, np.clip(1 - rings / (INNER_RINGS + 1), 0, 1))[:, None]
     return np.where(outside[:, None], colours, share * near + (1 - share) * colours)
