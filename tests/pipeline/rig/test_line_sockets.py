@@ -59,7 +59,7 @@ def test_beside_an_eyeball_one_sees_no_inside_of_the_head(stages, yaw):
 def test_the_lining_goes_from_the_lids_into_the_eyeball(stages):
     face, eyes, _, rig = stages
     for side, name in enumerate(SIDES):
-        band, _, share = _band(face.model, f"socket_{name}")
+        band, _, _, share = _band(face.model, f"socket_{name}")
         assert 0 < share.min() < 0.3
         assert share.max() == 1
         for delta in (np.zeros_like(rig.neutral), *rig.deltas):
@@ -88,3 +88,11 @@ def test_the_rim_itself_does_not_move(stages):
     for name in SIDES:
         rim = opening_rim(face.model, f"socket_{name}")
         np.testing.assert_array_equal(after.vertices(BLINK)[rim], before.vertices(BLINK)[rim])
+
+
+def test_no_triangle_of_a_socket_loses_its_area(stages):
+    face, _, _, rig = stages
+    for name in SIDES:
+        triangles = face.faces[face.region(f"socket_{name}")[face.faces].all(1)]
+        a, b, c = (rig.neutral[triangles[:, k]] for k in range(3))
+        assert (np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-9).all()

@@ -38,10 +38,12 @@ def line_sockets(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     started = time.perf_counter()
     neutral, deltas = rig.neutral.copy(), rig.deltas.copy()
     for side, name in enumerate(SIDES):
-        band, rim, share = _band(face.model, f"socket_{name}")
+        band, rim, weights, share = _band(face.model, f"socket_{name}")
         centre, radius = eyes.centres[side], eyes.radii[side]
-        neutral[band] = _lined(rig.neutral[rim], centre, radius, share)
-        deltas[:, band] = _lined(rig.neutral[rim] + rig.deltas[:, rim], centre, radius, share) - neutral[band]
+        start = (weights[..., None] * rig.neutral[rim]).sum(-2)
+        moved = (weights[..., None] * rig.deltas[:, rim]).sum(-2)
+        neutral[band] = _lined(start, centre, radius, share)
+        deltas[:, band] = _lined(start + moved, centre, radius, share) - neutral[band]
     report = {"seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, neutral=neutral, deltas=deltas, report=report)
 
@@ -60,19 +62,21 @@ def _lined(rim: np.ndarray, centre: np.ndarray, radius: float, share: np.ndarray
 
 
 @lru_cache(maxsize=8)
-def _band(model: MorphableModel, socket: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Vertices (k,) of a socket, the vertex (k,) of its rim that each hangs on, how far (k,) it is from it, at most 1.
+def _band(model: MorphableModel, socket: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices (k,) of a socket, the two of its rim (k, 2) that each hangs between, their weights, how far in it is.
 
-    Both by the template: the innermost of those that hang on one vertex of the rim is at 1.
+    All by the template: a share (k,) of 0 is on the rim, and those at the inner end are at 1. Two vertices of the rim
+    and not one, or several of the band would come to lie at one place.
     """
     band, rim = np.flatnonzero(model.region(socket)), opening_rim(model, socket)
-    distance, nearest = cKDTree(model.mean[rim]).query(model.mean[band])
+    distances, nearest = cKDTree(model.mean[rim]).query(model.mean[band], 2)
+    weights = 1 / distances**2
+    weights /= weights.sum(1, keepdims=True)
     edges = model.faces[model.region(socket)[model.faces].any(1)]
     inner = np.zeros(len(model.mean), bool)
     pairs = np.sort(edges[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), 1)
     pairs, count = np.unique(pairs, axis=0, return_counts=True)
     inner[pairs[count == 1]] = True
     inner[rim] = False
-    last = cKDTree(model.mean[inner])
-    to_last = last.query(model.mean[band])[0]
-    return band, rim[nearest], distance / (distance + to_last)
+    to_end = cKDTree(model.mean[inner]).query(model.mean[band])[0]
+    return band, rim[nearest], weights, distances[:, 0] / (distances[:, 0] + to_end)
