@@ -1,5 +1,6 @@
 """Every stage in order: one picture and its landmarks in, an avatar out."""
 
+import dataclasses
 import time
 from collections.abc import Callable
 
@@ -23,6 +24,7 @@ from toongeo.pipeline import (
     photometric_fit,
     snap_eyes,
 )
+from toongeo.pipeline.rig.line_sockets import line_sockets
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
 
@@ -93,7 +95,8 @@ def make_avatar(
     rig = close_lids(face, build_rig(face))
     clock.start("eyes")
     eyes = fit_eyes(face, rig)
-    rig = clear_lids(face, rig, eyes)
+    rig = line_sockets(face, clear_lids(face, rig, eyes), eyes)
+    face = dataclasses.replace(face, vertices=rig.neutral)
     clock.start("texture")
     texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
     clock.start("report")

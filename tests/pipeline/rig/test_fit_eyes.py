@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -74,3 +76,21 @@ def test_gaze_turns_the_eyeball_about_its_centre(avatar):
     radius = np.linalg.norm(turned - avatar.eyes.centres[0], axis=1)
     np.testing.assert_allclose(radius, avatar.eyes.radii[0], rtol=1e-6)  # the unit sphere is stored in float32
     assert turned[0, 0] > rest[0, 0] + 0.4 * avatar.eyes.radii[0]
+
+
+def test_the_eyeball_goes_back_behind_cheeks_that_are_flat(cartoon):
+    """Not only lids but all skin before an eyeball moves it in."""
+    face = align_face(fit_3dmm(*cartoon("moustache_man")), cartoon("moustache_man")[1])
+    rig = build_rig(face)
+    eyes = fit_eyes(face, rig)
+    V = face.vertices.copy()
+    for side, name in enumerate(("left", "right")):
+        offset = V - eyes.centres[side]
+        below = face.region("skin") & ~face.region(f"eye_{name}") & (np.abs(offset[:, 0]) < 5) & (offset[:, 1] < 0)
+        cheek = np.flatnonzero(below)[np.argsort(-offset[below, 1])[:20]]
+        V[cheek, 1:] = eyes.centres[side][1:] + eyes.radii[side] * np.array([-0.6, 0.6])
+    flat = dataclasses.replace(face, vertices=V)
+    eyes = fit_eyes(flat, rig)
+    for centre, radius in zip(eyes.centres, eyes.radii, strict=True):
+        offset = V[face.region("skin")] - centre
+        assert np.linalg.norm(offset[offset[:, 2] > 0], axis=1).min() >= radius

@@ -42,6 +42,18 @@ def test_the_scalp_takes_the_colour_of_the_hair(face, cartoon):
         np.testing.assert_allclose(np.median(texels_of(face, part, atlas), axis=0), SKIN, atol=2)
 
 
+def test_a_strand_over_the_side_of_a_cheek_is_not_painted_on_it(face, cartoon):
+    img, parse = painted(face, cartoon("moustache_man")[0].shape, hair=True)
+    jaw, nose = (face.project(face.vertices[face.landmark_vertices])[[4, 33]]).astype(int)
+    x = int(jaw[0] + 0.15 * (nose[0] - jaw[0]))
+    for layer, value in ((img, HAIR), (parse.labels, FaceLabel.HAIR)):
+        layer.setflags(write=True)
+        layer[: jaw[1], x - 6 : x + 7] = value
+    atlas = bake_texture(img, face, size=256, parse=parse)
+    cheek = np.vstack([texels_of(face, f"cheek_{side}", atlas) for side in ("left", "right")])
+    assert np.abs(cheek - SKIN).max(1).mean() < 2
+
+
 def test_without_hair_in_the_parse_the_head_stays_bald(face, cartoon):
     img, parse = painted(face, cartoon("moustache_man")[0].shape, hair=False)
     atlas = bake_texture(img, face, size=256, parse=parse)

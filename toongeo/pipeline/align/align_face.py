@@ -13,6 +13,7 @@ from toongeo.io import landmark_array
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
+from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
 from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.straighten_teeth import straighten_teeth
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
@@ -129,7 +130,7 @@ def align_face(
         at = visible_contour(fit.model, fit.camera, _anchored(fit, V, at, landmarks, weight, laplacian), at)
     aligned = _anchored(fit, V, at, landmarks, weight, laplacian)
     inner = straighten_teeth if flow else carry_inner_parts
-    aligned = inner(fit.model, fit.vertices, aligned)
+    aligned = keep_teeth_inside(fit.model, inner(fit.model, fit.vertices, aligned))
     seen = np.isfinite(landmarks).all(1)
     error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - landmarks[seen], axis=1)
     return AlignedFace(

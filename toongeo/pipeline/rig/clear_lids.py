@@ -9,9 +9,11 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.build_rig import Rig
 from toongeo.pipeline.rig.fit_eyes import CLEARANCE, SIDES, Eyes
 
+NEAR = 3.0  # radii from an eyeball's centre: skin farther from it does not come to it
+
 
 def clear_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
-    """Keep the skin around the eyes off the eyeballs, in each expression at weight 1.
+    """Keep the skin off the eyeballs, in each expression at weight 1.
 
     Vertices that an expression takes into the front half of an eyeball are moved out to its surface. Several
     expressions at once add their deltas and may still touch it.
@@ -28,9 +30,10 @@ def clear_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         A new one; only vertices around the eyes differ.
     """
     started = time.perf_counter()
-    deltas = rig.deltas.copy()
-    for side, name in enumerate(SIDES):
-        lids = np.flatnonzero(face.region(f"eye_{name}"))
+    deltas, skin = rig.deltas.copy(), face.region("skin")
+    for side in range(len(SIDES)):
+        near = np.linalg.norm(rig.neutral - eyes.centres[side], axis=1) < NEAR * eyes.radii[side]
+        lids = np.flatnonzero(skin & near)
         offsets = rig.neutral[lids] + deltas[:, lids] - eyes.centres[side]
         deltas[:, lids] += _outward(offsets, eyes.radii[side] * (1 + CLEARANCE))
     return dataclasses.replace(

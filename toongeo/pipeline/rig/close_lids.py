@@ -4,9 +4,11 @@ import dataclasses
 import time
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from toongeo.geometry import laplacian_align
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.align.rim_anchors import rim_path
 from toongeo.pipeline.rig.build_rig import Rig
 
@@ -48,12 +50,16 @@ def _closed(face: AlignedFace, side: str, V: np.ndarray) -> np.ndarray:
     used, local = np.unique(face.faces[patch], return_inverse=True)
     border = np.intersect1d(used, face.faces[~patch])  # where the patch is joined to the rest
     still = np.union1d(border, lower)
-    moving = np.setdiff1d(upper, still)
-    # Upper and lower rim are paired by how far along the eye they are, from corner to corner.
-    along = V[upper[-1]] - V[upper[0]]
-    at_lower, at_upper = V[lower] @ along, V[moving] @ along
-    order = np.argsort(at_lower)
-    targets = np.column_stack([np.interp(at_upper, at_lower[order], V[lower][order, axis]) for axis in range(3)])
+    # Upper and lower rim are paired by how far along them one is, from corner to corner: of rims that are steep at the
+    # corners, as those of round eyes are, no part is left out.
+    at_upper, at_lower = _along(V[upper]), _along(V[lower])
+    landing = np.column_stack([np.interp(at_upper, at_lower, V[lower, axis]) for axis in range(3)])
+    lands = ~np.isin(upper, still)
+    # The edge of the upper lid has a thickness: its inner side comes to lie behind the lower lid, not before it.
+    edge = np.setdiff1d(opening_rim(face.model, f"socket_{side}"), np.union1d(still, upper))
+    thickness, nearest = cKDTree(V[upper]).query(V[edge])
+    moving = np.r_[upper[lands], edge]
+    targets = np.vstack([landing[lands], landing[nearest] - thickness[:, None] * [0, 0, 1]])
     closed = V.copy()
     closed[used] = laplacian_align(
         V[used],
@@ -63,3 +69,9 @@ def _closed(face: AlignedFace, side: str, V: np.ndarray) -> np.ndarray:
         weight=WEIGHT,
     )
     return closed
+
+
+def _along(path: np.ndarray) -> np.ndarray:
+    """Length along a path of points (k, 3) up to each, as a share of the whole."""
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
+    return np.asarray(length / length[-1])

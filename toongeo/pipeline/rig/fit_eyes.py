@@ -15,7 +15,7 @@ from toongeo.pipeline.rig.gaze import gaze_rotation
 
 SIDES = ("left", "right")
 GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame
-CLEARANCE = 0.01  # of the radius: how far lids stay off the eyeball
+CLEARANCE = 0.02  # of the radius: how far lids stay off the eyeball
 # Of the radius: s.d. of centre and radius about the template's eyeball, carried along with the lids.
 PRIOR = np.array([0.15, 0.15, 0.15, 0.03])
 BLINK_WEIGHTS = np.array([0.0, 0.25, 0.5, 0.75])  # at 1 the lids are put onto the eyeball
@@ -94,7 +94,8 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
         lids = np.union1d(lids, rim)
         blink = rig.deltas[rig.names.index(f"eyeBlink{name.capitalize()}"), lids]
         path = face.vertices[lids] + BLINK_WEIGHTS[:, None, None] * blink
-        inset = _inset(path.reshape(-1, 3) - centre, radius * (1 + CLEARANCE))
+        points = np.vstack([path.reshape(-1, 3), around])
+        inset = _inset(points - centre, radius * (1 + CLEARANCE))
         centres[side], radii[side] = centre - inset * GAZE, radius
         report[f"inset_{name}_mm"] = inset
     report["seconds"] = time.perf_counter() - started

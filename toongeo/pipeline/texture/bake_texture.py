@@ -124,7 +124,7 @@ class _Places:
 
     def of(self, order: np.ndarray, ids: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pixels (k, 2) of the crop, trust (k,) in [0, 1] and footprint (k,) of texels, with vertices reordered."""
-        values = np.column_stack([self.values[order], self.shared])
+        values = np.column_stack([self.values[order], self.shared]).astype(np.float32)
         at = blend_corners(values[self.face.faces], ids, weights)
         px, height, width = at[:, :2], *self.picture.weight.shape
         column = np.clip(np.rint(px[:, 0]), 0, width - 1).astype(int)

@@ -1,6 +1,7 @@
 """Breadth-first diffusion of colours over the vertices of a mesh."""
 
 import numpy as np
+import scipy.sparse as sp
 
 from toongeo.geometry import adjacency
 
@@ -33,16 +34,20 @@ def diffuse_over_mesh(F: np.ndarray, colours: np.ndarray, known: np.ndarray) -> 
     >>> filled.ravel(), rings
     (array([4., 2., 3., 2.]), array([0, 0, 1, 1]))
     """
-    edges = adjacency(F, len(colours))
+    return diffused(adjacency(F, len(colours)), colours, known, len(colours))
+
+
+def diffused(edges: sp.csr_array, colours: np.ndarray, known: np.ndarray, reach: int) -> tuple[np.ndarray, np.ndarray]:
+    """:func:`diffuse_over_mesh` for edges (n, n) that are at hand, and no farther than ``reach`` rings."""
     filled = np.array(colours, float)
     rings = np.where(known, 0, -1)
-    ring = 0
-    while True:
-        ring += 1
-        visited = (rings >= 0).astype(float)
-        count = edges @ visited
-        frontier = np.flatnonzero((rings < 0) & (count > 0))
+    visited = np.column_stack([np.where(known[:, None], filled, 0), known])
+    for ring in range(1, reach + 1):
+        total = edges @ visited
+        frontier = np.flatnonzero((rings < 0) & (total[:, -1] > 0))
         if not len(frontier):
-            return filled, rings
-        filled[frontier] = (edges[frontier] @ (filled * visited[:, None])) / count[frontier, None]
+            break
+        filled[frontier] = total[frontier, :-1] / total[frontier, -1:]
+        visited[frontier, :-1], visited[frontier, -1] = filled[frontier], 1
         rings[frontier] = ring
+    return filled, rings

@@ -47,6 +47,8 @@ def skin_of(
     else:
         # Beards, glasses and drawn lines are part of the face.
         drawn = (parts != FaceLabel.BACKGROUND) & (amid(landmarks, front.shape) > 0)
+        # Strands that hang over the sides of the cheeks are not.
+        drawn &= (parts != FaceLabel.HAIR) | (amid(_inwards(landmarks), front.shape) > 0)
         allowed = (np.isin(parts, PARSED_FACE) | drawn).astype(np.uint8)
         if (allowed & front).any():
             # What is not the face takes its middle colour, so that no background blurs into the statistics.

@@ -1,12 +1,15 @@
 """Colours for what the picture does not show: the surface's own diffusion, hair, and the inside of the mouth."""
 
+from functools import lru_cache
+
 import cv2
 import numpy as np
 import scipy.sparse as sp
 
 from toongeo.geometry import adjacency
+from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.texture.diffuse_over_mesh import diffuse_over_mesh
+from toongeo.pipeline.texture.diffuse_over_mesh import diffused
 from toongeo.pipeline.texture.face_picture import FacePicture
 from toongeo.render import sample_image
 
@@ -40,7 +43,7 @@ def unseen_colours(face: AlignedFace, picture: FacePicture) -> tuple[np.ndarray,
     if not seen.any():
         return colours, offset
     outside = model.region("skin") | model.region("neck")
-    joined = model.faces[outside[model.faces].all(1)]
+    joined = _outer_edges(model)
     own = _blurred_at(picture, picture.sure)
     plain = seen & ~model.region("lips")
     skin = np.median(own[plain if plain.any() else seen], axis=0)
@@ -54,6 +57,13 @@ def unseen_colours(face: AlignedFace, picture: FacePicture) -> tuple[np.ndarray,
     model_skin = 255.0 * model.albedo_mean[model.region("face")].mean(0)
     colours = np.where(outside[:, None], filled, _matched(colours, model_skin, skin))
     return _inner_rims(model.faces, colours, outside), offset
+
+
+@lru_cache(maxsize=4)
+def _outer_edges(model: MorphableModel) -> sp.csr_array:
+    """Edges (n, n) of skin and neck."""
+    outside = model.region("skin") | model.region("neck")
+    return adjacency(model.faces[outside[model.faces].all(1)], len(model.mean)).astype(float)
 
 
 def _seen(face: AlignedFace, picture: FacePicture, mask: np.ndarray) -> np.ndarray:
@@ -76,20 +86,19 @@ def _blurred_at(picture: FacePicture, mask: np.ndarray) -> np.ndarray:
     return values[:, :3] / np.maximum(values[:, 3:], 1e-3)
 
 
-def _spread(F: np.ndarray, values: np.ndarray, known: np.ndarray, far: np.ndarray) -> np.ndarray:
+def _spread(edges: sp.csr_array, values: np.ndarray, known: np.ndarray, far: np.ndarray) -> np.ndarray:
     """Values diffused from known vertices, fading to ``far``, and smoothed where unknown."""
-    filled, rings = diffuse_over_mesh(F, values, known)
+    filled, rings = diffused(edges, values, known, FADE_RINGS)
     fade = np.clip(rings / FADE_RINGS, 0, 1)[:, None]
     filled = np.where(rings[:, None] < 0, far, (1 - fade) * filled + fade * far)
-    return _smooth(F, filled, ~known, SMOOTHING)
+    return _smooth(edges, filled, ~known, SMOOTHING)
 
 
-def _smooth(F: np.ndarray, values: np.ndarray, free: np.ndarray, passes: int) -> np.ndarray:
+def _smooth(edges: sp.csr_array, values: np.ndarray, free: np.ndarray, passes: int) -> np.ndarray:
     """Values whose free vertices took the mean of their neighbours several times."""
-    edges = adjacency(F, len(values))
-    degree = np.bincount(edges.nonzero()[0], minlength=len(values))
+    degree = np.diff(edges.indptr)
     rows = np.flatnonzero(free & (degree > 0))
-    mean = sp.diags_array(1.0 / degree[rows]) @ edges[rows].astype(float)
+    mean = sp.diags_array(1.0 / degree[rows]) @ edges[rows]
     values = values.copy()
     for _ in range(passes):
         values[rows] = mean @ values
@@ -97,7 +106,7 @@ def _smooth(F: np.ndarray, values: np.ndarray, free: np.ndarray, passes: int) ->
 
 
 def _with_hair(
-    face: AlignedFace, picture: FacePicture, joined: np.ndarray, colours: np.ndarray, skin: np.ndarray
+    face: AlignedFace, picture: FacePicture, joined: sp.csr_array, colours: np.ndarray, skin: np.ndarray
 ) -> np.ndarray:
     """Colours whose scalp, and forehead where hair falls on it, are those of the parsed hair."""
     regions = face.model.regions
@@ -134,6 +143,6 @@ def _matched(colours: np.ndarray, model_skin: np.ndarray, skin: np.ndarray) -> n
 
 def _inner_rims(F: np.ndarray, colours: np.ndarray, outside: np.ndarray) -> np.ndarray:
     """Colours whose inner sides of lids and lips begin with the colour of the skin they continue."""
-    near, rings = diffuse_over_mesh(F, colours, outside)
+    near, rings = diffused(adjacency(F, len(colours)), colours, outside, INNER_RINGS)
     share = np.where(rings < 0, 0.0, np.clip(1 - rings / (INNER_RINGS + 1), 0, 1))[:, None]
     return np.where(outside[:, None], colours, share * near + (1 - share) * colours)
