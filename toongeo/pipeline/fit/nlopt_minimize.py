@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import nlopt
 import numpy as np
@@ -36,6 +37,7 @@ class Minimum:
     evaluations: int
 
 
+@cache
 def known_algorithms() -> tuple[str, ...]:
     """Names of the nlopt algorithms that can be asked for, such as ``"LD_LBFGS"``."""
     names = [name for name in dir(nlopt) if name.startswith(("LD_", "LN_", "GD_", "GN_"))]
