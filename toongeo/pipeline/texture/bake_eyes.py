@@ -96,7 +96,7 @@ def _disc_image(rows: np.ndarray, columns: np.ndarray, colours: np.ndarray, seen
     image, known = np.full((*shape, 3), WHITE), np.zeros(shape, bool)
     image[rows[seen], columns[seen]] = colours[seen]
     known[rows[seen], columns[seen]] = True
-    if known.any():
+    if known.any() and not known.all():
         distance = cv2.distanceTransform((~known).astype(np.uint8), cv2.DIST_L2, 5)[..., None]
         fade = np.clip(distance / (FADE * known.shape[1]), 0, 1)
         image = (1 - fade) * diffuse_texture(image, known) + fade * WHITE

@@ -58,8 +58,8 @@ def diffuse_texture(
     Raises
     ------
     ValueError
-        If shapes or types do not fit, no pixel is known, a known value is not finite, or an option is
-            unknown.
+        If shapes or types do not fit, no pixel is known or none is unknown, a known value is not finite, or an
+        option is unknown.
 
     Examples
     --------
@@ -94,6 +94,8 @@ def _checked(img: ArrayLike, mask: ArrayLike) -> tuple[NDArray[Any], NDArray[np.
         raise ValueError(f"mask: expected bool of shape {img.shape[:2]}, got {mask.dtype} {mask.shape}")
     if not mask.any():
         raise ValueError("mask: expected at least one known pixel (True), got none")
+    if mask.all():
+        raise ValueError("mask: expected at least one unknown pixel (False), got none")
     if img.dtype.kind == "f" and not np.isfinite(img).all() and not np.isfinite(img[mask]).all():
         raise ValueError("img: expected finite values where mask is True, got NaN or infinity")
     return img, mask
