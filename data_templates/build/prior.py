@@ -27,6 +27,7 @@ from toongeo.model import MorphableModel
 from toongeo.model.artist_model import artist_model
 from toongeo.model.ibug68 import INNER, MIRROR, PARTS
 from toongeo.model.load_ict_facekit import load_ict_facekit
+from toongeo.pipeline.align.similarity import similarity
 from toongeo.pipeline.fit.contour import visible_landmarks
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
 
@@ -170,16 +171,6 @@ def linear_rows(modes: Floats, a: Floats, x: Floats, p: Floats, weight: Floats) 
 def barycentric(points: Floats, corners: Floats) -> Floats:
     """Barycentric coordinates (p, 3) of points (p, 3) in triangles (p, 3, 3)."""
     return np.asarray(igl.barycentric_coordinates(points, *(np.ascontiguousarray(corners[:, i]) for i in range(3))))
-
-
-def similarity(source: Floats, target: Floats) -> tuple[float, Floats, Floats]:
-    """Scale, rotation, translation with ``scale * source @ rotation.T + translation`` nearest to target (Umeyama)."""
-    centre, goal = source.mean(axis=0), target.mean(axis=0)
-    U, s, Vt = np.linalg.svd((target - goal).T @ (source - centre))
-    signs = np.array([1.0, 1.0, np.sign(np.linalg.det(U @ Vt))])
-    turn = U * signs @ Vt
-    scale = float((s * signs).sum() / ((source - centre) ** 2).sum())
-    return scale, turn, goal - scale * turn @ centre
 
 
 def skull_precision(template: MorphableModel) -> Floats:
