@@ -35,15 +35,16 @@ class FitOptions:
     landmark_weight, prior_weight : float
         ``w_l`` and ``w_r`` of Eq. 3 (Pan et al. 2024). Landmark errors are measured in outer-eye distances.
     landmark_deviation : float
-        Standard deviation of a landmark's coordinates between annotators, in outer-eye distances. Where a face (a
-        caricature, say) misses its landmarks by more, ``w_r`` grows with the square of the misfit.
+        Standard deviation of the misfit of a coordinate that is expected of people, in outer-eye distances. Where a
+        face (a caricature, say) misses its landmarks by more, ``w_r`` grows with the square of the misfit.
+    nod_deviation : float, degrees
+        Standard deviation of the pitch of heads in pictures.
     identity_weight, expression_weight : float
         ``w_id`` and ``w_exp`` of Eq. 6.
     jaw_weight : float
         ``w_n`` of Eq. 4 for the 17 jaw points; the inner points have 1 (on average, where the model knows the noise of
-        each). Where an annotator puts a jaw
-        point is a matter of taste, and with full weight they made the face worse in 3D than the mean face
-        is.
+        each). Where an annotator puts a jaw point is a matter of taste, and with full weight they made the face worse
+        in 3D than the mean face is.
     jaw_tangent : float in [0, 1]
         How much an error along the jaw's outline counts against one across it.
     contour : {"lines", "silhouette"}

@@ -53,7 +53,7 @@ def held_bounds(
 
 
 def posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats:
-    """Robust weights (k,) of the points that fix the first pose, from the misfit of the mean face."""
+    """Robust weights (k,) of the points that fix the first pose, from the misfit of the likeliest face."""
     trust = np.ones(len(points))
     for _ in range(_POSING_PASSES if options.robust else 0):
         scale, rotation, translation = scaled_orthographic_pose(points, pixels, trust)
