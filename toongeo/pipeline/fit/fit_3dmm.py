@@ -75,10 +75,10 @@ def fit_3dmm(
     """Pose, identity and expression of a morphable model from landmarks.
 
     Minimises ``w_l L_lan + w_r L_reg`` (Eq. 3 without the photometric term): the landmark loss of Eq. 4
-    and the prior of Eq. 6, about the likeliest face of the model, with a weak prior on the pitch. The camera is scaled orthographic, or, with
-    ``camera="perspective"``, has a focal length that is given or found. Jaw points slide along the contour lines of
-    the model: they are placed for the pose, held while the loss is minimised, and placed anew, until they
-    stay.
+    and the prior of Eq. 6, about the likeliest face of the model, with a weak prior on the pitch. The camera is
+    scaled orthographic, or, with ``camera="perspective"``, has a focal length that is given or found. Jaw points
+    slide along the contour lines of the model: they are placed for the pose, held while the loss is minimised, and
+    placed anew, until they stay.
 
     Errors are measured in face sizes of the picture, so its resolution, and the place and the tilt of the
     face in it, change nothing. Named expressions stay in [0, 1]. ``mouthClose`` stays 0: it corrects an
