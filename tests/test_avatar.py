@@ -69,7 +69,7 @@ def test_a_second_run_is_bit_identical(avatar, glb, cartoon, tmp_path):
 def test_the_glb_holds_46_named_targets_and_eyes_that_follow_gaze(glb):
     document = read_glb(glb).json
     names = {mesh["name"]: mesh["extras"]["targetNames"] for mesh in document["meshes"]}
-    assert len(names["head"]) == 46 and "eyeBlinkLeft" in names["head"]
+    assert len(names["head"]) == 46 + 8 and {"eyeBlinkLeft", "eyeLookUpLeft"} < set(names["head"])
     assert names["eye_left"] == ["eyeLookInLeft", "eyeLookOutLeft", "eyeLookUpLeft", "eyeLookDownLeft"]
     assert len(document["images"]) == 1
     assert {channel["target"]["path"] for channel in document["animations"][0]["channels"]} == {"weights"}

@@ -13,8 +13,7 @@ from toongeo.avatar_scene import avatar_scene
 from toongeo.crop_faces import Crop
 from toongeo.io import SceneMesh, write_glb, write_obj, write_ply
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
-from toongeo.pipeline.rig.gaze import gaze_names
-from toongeo.pipeline.rig.weight_vector import weight_vector
+from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.protocols import Camera, FaceParse
 from toongeo.render import (
     ScaledOrthographicCamera,
@@ -26,7 +25,6 @@ from toongeo.render import (
     uv_to_px,
 )
 
-GAZE_NAMES = (*gaze_names("left"), *gaze_names("right"))
 HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
 Weights = Mapping[str, float] | np.ndarray | None
 
@@ -73,22 +71,23 @@ class Avatar:
 
         Parameters
         ----------
-        weights : mapping of name to weight, (46,) array in the order of ``names``, or None
-            1 is the full expression. ``eyeLook*`` names are allowed and move only the eyeballs.
+        weights : mapping of name to weight, (46,) array in the order of ``names``, (54,) array, or None
+            1 is the full expression. ``eyeLook*`` names, the last eight of a (54,) array, turn the eyeballs and move
+            the lids a little.
 
         Raises
         ------
         ValueError
             If a name is unknown (the nearest are suggested), an array has another length, or a weight is not finite.
         """
-        return self.rig.vertices(_split(weights)[0])
+        return self.rig.vertices(weights)
 
     def eye_vertices(self, side: int, weights: Weights = None) -> np.ndarray:
         """Vertices (k, 3), mm, of the left (0) or right (1) eyeball; weights and errors as for :meth:`vertices`."""
         if side not in (0, 1):
             raise ValueError(f"side: expected 0 (left) or 1 (right), got {side!r}")
-        weight_vector(_split(weights)[0], self.names)
-        return self.eyes.looking(side, _split(weights)[1])
+        gaze = self.rig.weights(weights)[len(self.names) :]
+        return self.eyes.looking(side, dict(zip(GAZE_NAMES, gaze.tolist(), strict=True)))
 
     def surfaces(self, weights: Weights = None) -> list[Surface]:
         """Head, left and right eyeball, textured, for :func:`toongeo.render_mesh`."""
@@ -175,15 +174,6 @@ class Avatar:
         return ScaledOrthographicCamera.look(
             yaw, pitch, size=size, centre=(low + high) / 2, extent=HEADROOM * (high - low).max()
         )
-
-
-def _split(weights: Weights) -> tuple[Weights, dict[str, float]]:
-    """Weights of the head and weights of the gaze."""
-    if not isinstance(weights, Mapping):
-        return weights, {}
-    gaze = {name: weight for name, weight in weights.items() if name in GAZE_NAMES}
-    turns = dict(zip(GAZE_NAMES, weight_vector(gaze, GAZE_NAMES).tolist(), strict=True))
-    return {name: weight for name, weight in weights.items() if name not in gaze}, turns
 
 
 def _soft_light() -> np.ndarray:

@@ -8,7 +8,7 @@ from toongeo.io import Scene, SceneAnimation, SceneMesh
 from toongeo.model import MorphableModel
 from toongeo.pipeline import Eyes, Rig
 from toongeo.pipeline.rig.fit_eyes import SIDES
-from toongeo.pipeline.rig.gaze import gaze_names
+from toongeo.pipeline.rig.gaze import GAZE_NAMES, gaze_names
 
 FRAMES_PER_SECOND = 30
 # The clip: (seconds, weights reached then), linear in between.
@@ -28,8 +28,8 @@ CLIP: tuple[tuple[float, dict[str, float]], ...] = (
 def avatar_scene(rig: Rig, eyes: Eyes, model: MorphableModel, texture: np.ndarray, *, crop: Crop = "head") -> Scene:
     """Head and eyeballs of an avatar, and a clip that shows that they move.
 
-    The head has the expressions of the rig as targets; each eyeball is a mesh of its own about its centre and has the
-    four ``eyeLook*`` directions of its side.
+    The head has the expressions of the rig and the ``eyeLook*`` directions as targets; each eyeball is a mesh of its
+    own about its centre and has the four ``eyeLook*`` directions of its side.
 
     Parameters
     ----------
@@ -47,6 +47,7 @@ def avatar_scene(rig: Rig, eyes: Eyes, model: MorphableModel, texture: np.ndarra
         Meshes ``head``, ``eye_left`` and ``eye_right``, which share one texture.
     """
     kept = crop_faces(model, crop)
+    shapes = np.concatenate([rig.deltas, rig.gaze])
     used, faces = np.unique(model.faces[kept], return_inverse=True)
     used_uv, uv_faces = np.unique(model.uv_faces[kept], return_inverse=True)
     whole = len(used) == len(rig.neutral)
@@ -59,8 +60,8 @@ def avatar_scene(rig: Rig, eyes: Eyes, model: MorphableModel, texture: np.ndarra
         # A cut-out face is shaded like the whole head: its own normals would turn at the cut.
         normals=None if whole else vertex_normals(rig.neutral, model.faces)[used],
         texture=texture,
-        targets=rig.deltas if whole else rig.deltas[:, used],
-        target_names=rig.names,
+        targets=shapes if whole else shapes[:, used],
+        target_names=(*rig.names, *GAZE_NAMES),
     )
     meshes = (head, *(_eye_mesh(eyes, side, texture) for side in (0, 1)))
     return Scene(meshes, _clip(meshes))

@@ -13,10 +13,11 @@ from toongeo.pipeline.fit.ridge_regressor import RidgeRegressor, train_ridge_reg
 from toongeo.pipeline.parse.classical_parser import ClassicalParser
 from toongeo.pipeline.parse.parse_face import parse_face
 from toongeo.pipeline.parse.snap_eyes import snap_eyes
-from toongeo.pipeline.rig.build_rig import Rig, build_rig
+from toongeo.pipeline.rig.build_rig import build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
 from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
+from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
 from toongeo.pipeline.texture.bake_texture import bake_texture
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture

@@ -6,7 +6,7 @@ import pytest
 
 from toongeo.model.ibug68 import MIRROR
 from toongeo.pipeline import align_face, bake_texture, fit_3dmm
-from toongeo.pipeline.rig.build_rig import Rig
+from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.bake_texture import _atlas_fragments
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, MAX_SIDE, OPENINGS, face_picture, opening_mask
 from toongeo.render import ScaledOrthographicCamera, sample_image, uv_to_px
@@ -120,7 +120,8 @@ def test_opening_mask_of_a_square_diamond():
 def test_skin_that_an_expression_stretches_takes_no_drawing(face, img):
     """An expression that does nothing changes no texel; one that blows up the cheek takes the drawing off it."""
     model = face.model
-    still = Rig(("still",), face.vertices, np.zeros((1, *face.vertices.shape), np.float32), {"seconds": 0.0})
+    nothing = np.zeros((9, *face.vertices.shape), np.float32)
+    still = Rig(("still",), face.vertices, nothing[:1], nothing[1:], np.zeros(1), {"seconds": 0.0})
     plain = bake_texture(img, face, size=256)
     np.testing.assert_array_equal(bake_texture(img, face, rig=still, size=256), plain)
     lips = model.region("lips")

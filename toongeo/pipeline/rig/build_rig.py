@@ -1,57 +1,16 @@
 """The named expressions of the template, transferred to a new face."""
 
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo._read_only import read_only
 from toongeo.geometry import DeformationTransfer
-from toongeo.geometry.one_thread import one_thread
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.weight_vector import weight_vector
+from toongeo.pipeline.rig.gaze import GAZE_NAMES
+from toongeo.pipeline.rig.rig import Rig
 
 MOVES_MM = 0.05  # what moves less than this in every expression is held still
-
-
-@dataclass(frozen=True, eq=False)
-class Rig:
-    """Blendshapes of one face: ``S* = S_0 + B beta`` (Pan et al. 2024, Eq. 13).
-
-    Attributes
-    ----------
-    names : tuple of k names
-    neutral : (n, 3) float64, mm, model frame
-        S_0.
-    deltas : (k, n, 3) float32, mm
-        The rows of B: each expression at weight 1 minus the neutral face.
-    report : dict
-        ``seconds``.
-    """
-
-    names: tuple[str, ...]
-    neutral: np.ndarray
-    deltas: np.ndarray
-    report: dict[str, float]
-
-    def __post_init__(self) -> None:
-        read_only(self, "neutral", "deltas")
-
-    def vertices(self, weights: Mapping[str, float] | np.ndarray | None = None) -> np.ndarray:
-        """Vertices (n, 3), mm, for weights by name or a vector (k,); None is the neutral face.
-
-        Raises
-        ------
-        ValueError
-            If a name is unknown, a vector has another length, or a weight is not finite.
-        """
-        beta = weight_vector(weights, self.names)
-        active = np.flatnonzero(beta)
-        with one_thread():
-            moved = np.tensordot(beta[active].astype(np.float32), self.deltas[active], 1)
-        return self.neutral + moved
 
 
 def build_rig(face: AlignedFace) -> Rig:
@@ -68,7 +27,7 @@ def build_rig(face: AlignedFace) -> Rig:
     Returns
     -------
     Rig
-        With the ``model.n_named`` named expressions of the model.
+        With the ``model.n_named`` named expressions of the model; nothing follows the gaze yet.
     """
     started = time.perf_counter()
     model = face.model
@@ -81,6 +40,8 @@ def build_rig(face: AlignedFace) -> Rig:
         names=model.expression_names[: model.n_named],
         neutral=face.vertices,
         deltas=deltas,
+        gaze=np.zeros((len(GAZE_NAMES), *face.vertices.shape), np.float32),
+        pose=np.zeros(model.n_named),
         report={"seconds": time.perf_counter() - started},
     )
 

@@ -6,8 +6,8 @@ import time
 import numpy as np
 
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.build_rig import Rig
 from toongeo.pipeline.rig.fit_eyes import CLEARANCE, SIDES, Eyes
+from toongeo.pipeline.rig.rig import Rig
 
 NEAR = 3.0  # radii from an eyeball's centre: skin farther from it does not come to it
 

@@ -10,7 +10,7 @@ from toongeo.geometry import laplacian_align
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.align.rim_anchors import rim_path
-from toongeo.pipeline.rig.build_rig import Rig
+from toongeo.pipeline.rig.rig import Rig
 
 WEIGHT = 1e3  # of the anchors: they are met to about a hundredth of a millimetre
 

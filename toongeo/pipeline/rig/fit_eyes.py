@@ -10,8 +10,8 @@ from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.align.similarity import similarity
-from toongeo.pipeline.rig.build_rig import Rig
 from toongeo.pipeline.rig.gaze import gaze_rotation
+from toongeo.pipeline.rig.rig import Rig
 
 SIDES = ("left", "right")
 GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame

@@ -33,3 +33,6 @@ def gaze_rotation(side: str, weights: Mapping[str, float]) -> np.ndarray:
     inward, outward, up, down = (weights.get(name, 0.0) for name in gaze_names(side))
     yaw = SIDEWAYS * (outward - inward) * (1 if side == "left" else -1)
     return Rotation.from_euler("YX", [yaw, UPDOWN * (down - up)], degrees=True).as_matrix()
+
+
+GAZE_NAMES = (*gaze_names("left"), *gaze_names("right"))

@@ -10,8 +10,8 @@ from scipy.spatial import cKDTree
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
-from toongeo.pipeline.rig.build_rig import Rig
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
+from toongeo.pipeline.rig.rig import Rig
 
 DEPTH = 0.95  # of the eyeball's radius: where the lining ends, inside the eyeball
 

@@ -8,7 +8,7 @@ import numpy as np
 from toongeo.io import check_image
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.build_rig import Rig
+from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.delit import delit
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import FacePicture, face_picture
