@@ -63,6 +63,7 @@ __getattr__, __dir__, __all__ = attach(
         "bake_eyes": "pipeline",
         "build_rig": "pipeline",
         "Rig": "pipeline",
+        "Animator": "pipeline",
         "fit_eyes": "pipeline",
         "close_lids": "pipeline",
         "clear_lids": "pipeline",

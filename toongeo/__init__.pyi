@@ -22,6 +22,7 @@ from toongeo.model import default_model as default_model
 from toongeo.model import expression_weights as expression_weights
 from toongeo.model import preset as preset
 from toongeo.pipeline import AlignedFace as AlignedFace
+from toongeo.pipeline import Animator as Animator
 from toongeo.pipeline import ClassicalParser as ClassicalParser
 from toongeo.pipeline import Eyes as Eyes
 from toongeo.pipeline import FaceFit as FaceFit

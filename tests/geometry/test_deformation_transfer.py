@@ -29,10 +29,14 @@ def with_fourth(V, F):
     return np.stack([e1, e2, normal], axis=2)
 
 
-def literal_system(source, deformed, F, target, fixed, positions):
+def gradients(source, deformed, F):
+    """Q (m, 3, 3) of Eq. 15."""
+    return with_fourth(deformed, F) @ np.linalg.inv(with_fourth(source, F))
+
+
+def literal_system(Q, F, target, fixed, positions):
     """Eq. 14-16 as printed: all fourth vertices are unknowns; dense least squares; some vertices given."""
-    n, m = len(source), len(F)
-    Q = with_fourth(deformed, F) @ np.linalg.inv(with_fourth(source, F))
+    n, m = len(target), len(F)
     W = np.linalg.inv(with_fourth(target, F))
     A = np.zeros((m, 3, n + m))
     for j in range(m):
@@ -51,9 +55,60 @@ def test_is_the_literal_system_of_sumner_and_popovic(bumpy, deformed, target, pi
     source, F = bumpy
     fixed = [0] if pinned is None else pinned
     at = target[fixed] + (deformed[fixed] - source[fixed] if pinned is None else 0)
-    expected = literal_system(source, deformed, F, target, fixed, at)
+    expected = literal_system(gradients(source, deformed, F), F, target, fixed, at)
     result = deformation_transfer(source, deformed, F, target, pinned=pinned)
     np.testing.assert_allclose(result, expected, atol=1e-10)
+
+
+@pytest.mark.parametrize("gain", [-0.5, 0.5, 2.0])
+def test_is_linear_in_the_gradients_and_not_in_the_vertices(bumpy, deformed, target, gain):
+    """The displacement times g is the transfer of I + g (Q - I); that of g times the motion is another one."""
+    source, F = bumpy
+    displacement = deformation_transfer(source, deformed, F, target, pinned=[0]) - target
+    Q = np.eye(3) + gain * (gradients(source, deformed, F) - np.eye(3))
+    expected = literal_system(Q, F, target, [0], target[[0]])
+    np.testing.assert_allclose(target + gain * displacement, expected, atol=1e-10)
+    moved = source + gain * (deformed - source)
+    assert np.abs(deformation_transfer(source, moved, F, target, pinned=[0]) - expected).max() > 0.01
+
+
+@pytest.mark.parametrize("pinned", [None, [7, 8]])
+def test_a_shift_of_any_mesh_only_shifts_the_result(bumpy, deformed, target, pinned):
+    source, F = bumpy
+    t = np.array([3.0, -1, 2])
+    expected = deformation_transfer(source, deformed, F, target, pinned=pinned)
+    both = deformation_transfer(source + t, deformed + t, F, target, pinned=pinned)
+    np.testing.assert_allclose(both, expected, atol=1e-11)
+    alone = deformation_transfer(source, deformed, F, target + t, pinned=pinned)
+    np.testing.assert_allclose(alone, expected + t, atol=1e-11)
+
+
+@pytest.mark.parametrize("pinned", [None, [7, 8]])
+def test_a_rigid_motion_of_one_mesh_is_harmless_when_aligned(bumpy, deformed, target, rotation, pinned):
+    source, F = bumpy
+    move = lambda X: X @ rotation.T + [3.0, -1, 2]  # noqa: E731
+    transfer = (
+        lambda *meshes, align=True: deformation_transfer(  # noqa: E731
+            *meshes[:2], F, meshes[2], pinned=pinned, align=align
+        )
+    )
+    expected = transfer(source, deformed, target)
+    np.testing.assert_allclose(transfer(move(source), move(deformed), target), expected, atol=1e-10)
+    np.testing.assert_allclose(transfer(source, deformed, move(target)), move(expected), atol=1e-10)
+    # Without it the gradients keep the axes of the source, and the motion goes another way.
+    free = transfer(source, deformed, target, align=False)
+    assert np.abs(transfer(move(source), move(deformed), target, align=False) - free).max() > 0.1
+
+
+def test_aligned_is_the_literal_system_of_the_turned_source(bumpy, deformed, target, rotation):
+    from scipy.spatial.transform import Rotation
+
+    source, F = bumpy
+    target = target @ rotation.T
+    turn = Rotation.align_vectors(target - target.mean(0), source - source.mean(0))[0].as_matrix()
+    Q = gradients(source @ turn.T, deformed @ turn.T, F)
+    result = deformation_transfer(source, deformed, F, target, pinned=[3], align=True)
+    np.testing.assert_allclose(result, literal_system(Q, F, target, [3], target[[3]]), atol=1e-10)
 
 
 def test_no_deformation_gives_the_target_exactly(bumpy, target):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry._components import components
-from toongeo.geometry._cross import cross
 from toongeo.geometry._factor import factor_spd, solve
+from toongeo.geometry._rigid_rotation import rigid_rotation
+from toongeo.geometry._transfer_operators import fourth_edges, transfer_operators
 from toongeo.geometry.validate_mesh import validate_mesh
 
 __all__ = ["DeformationTransfer", "deformation_transfer"]
@@ -21,6 +21,7 @@ def deformation_transfer(
     V_target: ArrayLike,
     *,
     pinned: ArrayLike | None = None,
+    align: bool = False,
 ) -> NDArray[np.float64]:
     """Deform `V_target` as `V_deformed` deforms `V_source` (Pan et al. 2024, Eq. 14-16).
 
@@ -36,6 +37,8 @@ def deformation_transfer(
         The target at rest.
     pinned : (p,) int, optional
         Vertices held where the target has them; see `DeformationTransfer`.
+    align : bool
+        Turn the source with its deformations onto the target first; see `DeformationTransfer`.
 
     Returns
     -------
@@ -55,7 +58,7 @@ def deformation_transfer(
     >>> deformation_transfer(V, 2 * V, F, V + 5)[1].round(9)
     array([7., 5., 5.])
     """
-    return DeformationTransfer(V_source, F, V_target, pinned=pinned).transfer(V_deformed)
+    return DeformationTransfer(V_source, F, V_target, pinned=pinned, align=align).transfer(V_deformed)
 
 
 class DeformationTransfer:
@@ -66,6 +69,9 @@ class DeformationTransfer:
     target's vertices minimise ``sum_j |Q_j - Q'_j|_F^2`` (Eq. 16, squared as Sumner and Popovic have it,
     each triangle alike whatever its area). The target's fourth vertices occur in one term each and are
     eliminated; what remains has the same minimiser and a third of the unknowns.
+
+    The gradients are those of the world's axes: they are carried over as they are, so source and target have to face
+    the same way. ``align=True`` sees to that; a rigid motion of one of the meshes then only moves the result along.
 
     The energy does not see translations. A connected component with a pinned vertex is held by it. One
     without is placed so that its lowest-numbered vertex moves as far as that vertex of the source does;
@@ -81,6 +87,9 @@ class DeformationTransfer:
         The target at rest, without degenerate triangles: they have no gradient.
     pinned : (p,) int, optional
         Vertices held exactly where the target has them, in every transfer.
+    align : bool
+        Turn the source at rest, and all its deformations with it, by the rotation that brings it nearest to the
+        target (Kabsch). False is the method as published.
 
     Raises
     ------
@@ -101,7 +110,13 @@ class DeformationTransfer:
     """
 
     def __init__(
-        self, V_source: ArrayLike, F: ArrayLike, V_target: ArrayLike, *, pinned: ArrayLike | None = None
+        self,
+        V_source: ArrayLike,
+        F: ArrayLike,
+        V_target: ArrayLike,
+        *,
+        pinned: ArrayLike | None = None,
+        align: bool = False,
     ) -> None:
         self._source, faces = validate_mesh(V_source, F, names=("V_source", "F"), nondegenerate=True)
         self._target, faces = validate_mesh(V_target, faces, names=("V_target", "F"), nondegenerate=True)
@@ -109,9 +124,11 @@ class DeformationTransfer:
         if len(self._target) != n:
             raise ValueError(f"V_target: expected {n} vertices as V_source has, got {len(self._target)}")
         self._corners = np.ascontiguousarray(faces.T)
-        self._rest_normals = _fourth_edges(self._source, self._corners)
+        self._rest_normals = fourth_edges(self._source, self._corners)
+        self._rotation = rigid_rotation(self._source, self._target) if align else np.eye(3)
 
-        stiffness, self._from_vertices, self._from_normals = _operators(self._source, self._target, self._corners)
+        turned = self._source @ self._rotation.T
+        stiffness, from_vertices, from_normals = transfer_operators(turned, self._target, self._corners)
         pins = _checked_pins(pinned, n)
         self._component = components(faces, n)
         lowest = np.unique(self._component, return_index=True)[1]
@@ -119,6 +136,7 @@ class DeformationTransfer:
         self._placed = np.setdiff1d(np.arange(len(lowest)), self._component[pins])  # components without a pin
         self._placed_by = lowest[self._placed]
         self._free = np.setdiff1d(np.arange(n), np.concatenate([pins, self._placed_by]))
+        self._from_vertices, self._from_normals = from_vertices[self._free], from_normals[self._free]
         self._factor = factor_spd(stiffness[self._free][:, self._free]) if len(self._free) else None
 
     def transfer(self, V_deformed: ArrayLike) -> NDArray[np.float64]:
@@ -158,63 +176,22 @@ class DeformationTransfer:
 
     def _transfer_one(self, shape: NDArray[np.float64]) -> NDArray[np.float64]:
         moved = shape - self._source
-        tilted = _fourth_edges(np.asarray(shape, dtype=np.float64), self._corners) - self._rest_normals
-        right = self._from_vertices @ moved + self._from_normals @ tilted
         # Displacements are solved for: no deformation then gives the target to the last bit.
         displacement = np.zeros_like(moved)
         if self._factor is not None:
-            displacement[self._free] = solve(self._factor, right[self._free])
+            right = self._from_vertices @ moved + self._from_normals @ self._tilted(shape, moved)
+            displacement[self._free] = solve(self._factor, right @ self._rotation.T)
         offset = np.zeros((self._n_components, 3))
-        offset[self._placed] = moved[self._placed_by]
+        offset[self._placed] = moved[self._placed_by] @ self._rotation.T
         return self._target + displacement + offset[self._component]
 
-
-def _fourth_edges(V: NDArray[np.float64], corners: NDArray[np.int64]) -> NDArray[np.float64]:
-    """``n / sqrt|n|`` (m, 3), ``n`` the cross product of two edges (Eq. 14); 0 for a collapsed triangle."""
-    X = np.ascontiguousarray(V.T)
-    a, b, c = (X[:, corner] for corner in corners)
-    normal = cross(b - a, c - a)
-    root = np.sqrt(np.sqrt((normal**2).sum(axis=0)))
-    return np.divide(normal, root, out=np.zeros_like(normal), where=root > 0).T
-
-
-def _dual_edges(
-    V: NDArray[np.float64], corners: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Rows of the inverse of ``[e1, e2, n / sqrt|n|]``, coordinates first: three arrays (3, m)."""
-    X = np.ascontiguousarray(V.T)
-    a, b, c = (X[:, corner] for corner in corners)
-    e1, e2 = b - a, c - a
-    normal = cross(e1, e2)
-    squared = (normal**2).sum(axis=0)
-    return cross(e2, normal) / squared, cross(normal, e1) / squared, normal / squared**0.75
-
-
-def _operators(
-    source: NDArray[np.float64], target: NDArray[np.float64], corners: NDArray[np.int64]
-) -> tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]:
-    """``K`` (n, n), ``B`` (n, n), ``N`` (n, m) with ``K x = B v + N (n / sqrt|n|)`` for a deformed source v.
-
-    The gradients of the target's hat functions are its first two dual edges ``g1, g2`` and
-    ``g0 = -g1 - g2``: they lie in the triangle, so the fourth vertex, which adds a normal part to ``Q'``,
-    drops out. Then ``K`` sums ``g_a . g_b``, and the right-hand side sums ``Q g_a`` with
-    ``Q = [e1, e2, n / sqrt|n|] [h1; h2; h3]`` where ``h`` are the dual edges of the source at rest.
-    """
-    n, m = len(source), corners.shape[1]
-    g1, g2, _ = _dual_edges(target, corners)
-    gradients = (-g1 - g2, g1, g2)
-    h1, h2, h3 = _dual_edges(source, corners)
-    hats = (-h1 - h2, h1, h2)
-
-    rows = np.concatenate([corners[a] for a in range(3) for _ in range(3)])
-    columns = np.concatenate([corners[b] for _ in range(3) for b in range(3)])
-    stiffness = np.concatenate([(ga * gb).sum(axis=0) for ga in gradients for gb in gradients])
-    mixed = np.concatenate([(ga * hb).sum(axis=0) for ga in gradients for hb in hats])
-    tilt = np.concatenate([(ga * h3).sum(axis=0) for ga in gradients])
-    K = sp.csr_matrix((stiffness, (rows, columns)), shape=(n, n))
-    B = sp.csr_matrix((mixed, (rows, columns)), shape=(n, n))
-    N = sp.csr_matrix((tilt, (corners.ravel(), np.tile(np.arange(m), 3))), shape=(n, m))
-    return K, B, N
+    def _tilted(self, shape: NDArray[np.float64], moved: NDArray[np.float64]) -> NDArray[np.float64]:
+        """How far the fourth vertices move from the first; most expressions leave most triangles as they are."""
+        touched = np.flatnonzero((moved != 0).any(axis=1)[self._corners].any(axis=0))
+        corners = np.ascontiguousarray(self._corners[:, touched])
+        tilted = np.zeros_like(self._rest_normals)
+        tilted[touched] = fourth_edges(np.asarray(shape, np.float64), corners) - self._rest_normals[touched]
+        return tilted
 
 
 def _checked_pins(pinned: ArrayLike | None, n: int) -> NDArray[np.int64]:

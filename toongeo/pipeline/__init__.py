@@ -13,6 +13,7 @@ from toongeo.pipeline.fit.ridge_regressor import RidgeRegressor, train_ridge_reg
 from toongeo.pipeline.parse.classical_parser import ClassicalParser
 from toongeo.pipeline.parse.parse_face import parse_face
 from toongeo.pipeline.parse.snap_eyes import snap_eyes
+from toongeo.pipeline.rig.animator import Animator
 from toongeo.pipeline.rig.build_rig import build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
@@ -25,6 +26,7 @@ from toongeo.pipeline.texture.texture_coordinates import texture_coordinates
 
 __all__ = [
     "AlignedFace",
+    "Animator",
     "ClassicalParser",
     "Eyes",
     "FaceFit",

@@ -32,7 +32,7 @@ def build_rig(face: AlignedFace) -> Rig:
     started = time.perf_counter()
     model = face.model
     shapes = model.expression[: model.n_named]
-    transfer = DeformationTransfer(model.mean, model.faces, face.vertices, pinned=_still_vertices(model))
+    transfer = DeformationTransfer(model.mean, model.faces, face.vertices, pinned=_still_vertices(model), align=True)
     deltas = np.empty(shapes.shape, np.float32)
     for k, shape in enumerate(shapes):
         deltas[k] = transfer.transfer(model.mean + shape) - face.vertices

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo._read_only import read_only
-from toongeo.geometry.one_thread import one_thread
+from toongeo.model.expression_schemes import SCHEMES
+from toongeo.model.expression_weights import expression_weights
+from toongeo.pipeline.rig.add_rows import add_rows
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.weight_vector import weight_vector
 
@@ -46,6 +48,9 @@ class Rig:
         Parameters
         ----------
         weights : mapping of name to weight, (k,) array of the expressions, (k + 8,) array, or None for the neutral face
+            Weights are not clipped: 1 is the full expression, more exaggerates it. ARKit's ``browInnerUp`` and
+            ``cheekPuff`` stand for both their halves, so that ARKit's 52 names can be given as they are; for names of
+            other systems see :func:`toongeo.expression_weights`.
 
         Raises
         ------
@@ -53,17 +58,28 @@ class Rig:
             If a name is unknown (the nearest are suggested), an array has another length, or a weight is not finite.
         """
         names = (*self.names, *GAZE_NAMES)
+        if isinstance(weights, Mapping):
+            weights = _by_our_names(weights, names)
         if weights is None or isinstance(weights, Mapping) or np.shape(weights) == (len(names),):
             return weight_vector(weights, names)
         return np.r_[weight_vector(weights, self.names), np.zeros(len(GAZE_NAMES))]
 
     def vertices(self, weights: Mapping[str, float] | np.ndarray | None = None) -> np.ndarray:
         """Vertices (n, 3), mm; weights and errors as for :meth:`weights`."""
-        beta = self.weights(weights).astype(np.float32)
+        beta = self.weights(weights)
         k = len(self.names)
-        moved = np.zeros(self.neutral.shape, np.float32)
-        with one_thread():
-            for part, shapes in ((beta[:k], self.deltas), (beta[k:], self.gaze)):
-                active = np.flatnonzero(part)
-                moved += np.tensordot(part[active], shapes[active], 1)
-        return self.neutral + moved
+        moved = np.zeros(self.neutral.size, np.float32)
+        add_rows(moved, self.deltas.reshape(k, -1), beta[:k])
+        add_rows(moved, self.gaze.reshape(len(GAZE_NAMES), -1), beta[k:])
+        return self.neutral + moved.reshape(self.neutral.shape)
+
+
+def _by_our_names(weights: Mapping[str, float], names: tuple[str, ...]) -> Mapping[str, float]:
+    """Weights without ARKit's names of two halves at once."""
+    joint = [name for name in weights if name not in names and name in SCHEMES["arkit"]]
+    if not joint:
+        return weights
+    split = {name: weight for name, weight in weights.items() if name not in joint}
+    for name, weight in expression_weights({name: weights[name] for name in joint}).items():
+        split[name] = split.get(name, 0.0) + weight
+    return split
