@@ -87,11 +87,10 @@ def test_a_shift_of_any_mesh_only_shifts_the_result(bumpy, deformed, target, pin
 def test_a_rigid_motion_of_one_mesh_is_harmless_when_aligned(bumpy, deformed, target, rotation, pinned):
     source, F = bumpy
     move = lambda X: X @ rotation.T + [3.0, -1, 2]  # noqa: E731
-    transfer = (
-        lambda *meshes, align=True: deformation_transfer(  # noqa: E731
-            *meshes[:2], F, meshes[2], pinned=pinned, align=align
-        )
-    )
+
+    def transfer(V_source, V_deformed, V_target, align=True):
+        return deformation_transfer(V_source, V_deformed, F, V_target, pinned=pinned, align=align)
+
     expected = transfer(source, deformed, target)
     np.testing.assert_allclose(transfer(move(source), move(deformed), target), expected, atol=1e-10)
     np.testing.assert_allclose(transfer(source, deformed, move(target)), move(expected), atol=1e-10)
