@@ -13,7 +13,7 @@ def glb(avatar, tmp_path_factory):
     return path
 
 
-def test_neutral_vertices_are_the_aligned_face(avatar):
+def test_neutral_vertices_are_the_aligned_face_if_it_shows_no_expression(avatar):
     np.testing.assert_array_equal(avatar.vertices(), avatar.face.vertices)
 
 

@@ -61,6 +61,7 @@ __getattr__, __dir__, __all__ = attach(
         "bake_texture": "pipeline",
         "texture_coordinates": "pipeline",
         "bake_eyes": "pipeline",
+        "neutral_face": "pipeline",
         "build_rig": "pipeline",
         "Rig": "pipeline",
         "Animator": "pipeline",

@@ -3,6 +3,7 @@
 import dataclasses
 import time
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 
@@ -20,10 +21,12 @@ from toongeo.pipeline import (
     close_lids,
     fit_3dmm,
     fit_eyes,
+    neutral_face,
     parse_face,
     photometric_fit,
     snap_eyes,
 )
+from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.rig.line_sockets import line_sockets
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
@@ -39,6 +42,8 @@ def make_avatar(
     parser: FaceParser | None = None,
     snap: bool = False,
     photometric: bool = False,
+    neutral: bool = True,
+    gain: float | Literal["auto"] = 1.0,
     texture_size: int = 1024,
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
@@ -58,6 +63,12 @@ def make_avatar(
         detector, which shrinks and shifts the eyes of drawings; points that were set by hand are better left alone.
     photometric : bool
         Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
+    neutral : bool
+        Take a clear expression of the mouth out of the face (:func:`toongeo.neutral_face`): ``avatar.vertices()`` is
+        then at rest, ``avatar.vertices(avatar.rig.pose)`` as in the picture. False: the face is taken for neutral as
+        it is drawn.
+    gain : float or "auto"
+        Strength of the expressions; see :func:`toongeo.build_rig`.
     texture_size : int
         Side of the texture atlas in texels.
     progress : callable, optional
@@ -92,11 +103,14 @@ def make_avatar(
     clock.start("align")
     face = align_face(fit, landmarks)
     clock.start("rig")
-    rig = close_lids(face, build_rig(face))
+    at_rest = neutral_face(face) if neutral else face
+    rig = close_lids(at_rest, build_rig(at_rest, gain=gain))
     clock.start("eyes")
-    eyes = fit_eyes(face, rig)
-    rig = line_sockets(face, clear_lids(face, rig, eyes), eyes)
-    face = dataclasses.replace(face, vertices=rig.neutral)
+    eyes = fit_eyes(at_rest, rig)
+    rig = line_sockets(at_rest, clear_lids(at_rest, rig, eyes), eyes)
+    # What these stages did to the neutral face (sockets that end in the eyeballs) is done to the face of the picture.
+    face = dataclasses.replace(face, vertices=rig.neutral + (face.vertices - at_rest.vertices))
+    rig = dataclasses.replace(rig, pose=fit_pose(rig, face.vertices, face.region("skin")))
     clock.start("texture")
     texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
     clock.start("report")

@@ -1,41 +1,61 @@
 """The named expressions of the template, transferred to a new face."""
 
 import time
+from typing import Literal
 
 import numpy as np
 
 from toongeo.geometry import DeformationTransfer
-from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.rig.feature_gains import feature_gains
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.still_vertices import still_vertices
 
-MOVES_MM = 0.05  # what moves less than this in every expression is held still
 
-
-def build_rig(face: AlignedFace) -> Rig:
+def build_rig(face: AlignedFace, *, gain: float | Literal["auto"] = 1.0) -> Rig:
     """Expressions of the template's mean face, transferred to this face (Pan et al. 2024, section 3.3).
 
-    The face as it was aligned is taken for neutral. The gradients of each template expression are carried over by
-    :class:`toongeo.DeformationTransfer`; vertices that no expression moves on the template (skull, neck, ears) are
-    pinned.
+    The face is taken for neutral; :func:`neutral_face` makes it so. The gradients of each template expression are
+    carried over by :class:`toongeo.DeformationTransfer`; vertices that no expression moves on the template (skull,
+    neck, ears) are pinned, and the template is turned onto the face first.
 
     Parameters
     ----------
     face : AlignedFace
+    gain : float or "auto"
+        Strength of the expressions: gradients Q are carried over as ``I + gain (Q - I)``. Since the system is linear in
+        them and the pins do not move, that multiplies the blendshapes. "auto" chooses a gain for each expression, by
+        which its feature (mouth, eye, brow, nose) travels as far in proportion to its own size as on the template;
+        see :func:`~toongeo.pipeline.rig.feature_gains.feature_gains`.
 
     Returns
     -------
     Rig
         With the ``model.n_named`` named expressions of the model; nothing follows the gaze yet.
+
+    Raises
+    ------
+    ValueError
+        If the gain is neither "auto" nor a positive number, or the face has other vertices than its model.
     """
     started = time.perf_counter()
+    if gain != "auto" and not (isinstance(gain, float | int) and 0 < gain < np.inf):
+        raise ValueError(f"gain: expected a positive number or 'auto', got {gain!r}")
     model = face.model
+    if face.vertices.shape != model.mean.shape:
+        raise ValueError(
+            f"face: expected vertices of shape {model.mean.shape}, one for each of its model,"
+            f" got {face.vertices.shape}; another mesh has to be registered first"
+        )
     shapes = model.expression[: model.n_named]
-    transfer = DeformationTransfer(model.mean, model.faces, face.vertices, pinned=_still_vertices(model), align=True)
+    transfer = DeformationTransfer(model.mean, model.faces, face.vertices, pinned=still_vertices(model), align=True)
     deltas = np.empty(shapes.shape, np.float32)
     for k, shape in enumerate(shapes):
         deltas[k] = transfer.transfer(model.mean + shape) - face.vertices
+    gains = feature_gains(model, face.vertices, deltas) if gain == "auto" else np.full(len(deltas), float(gain))
+    if (gains != 1).any():
+        deltas *= gains.astype(np.float32)[:, None, None]
     return Rig(
         names=model.expression_names[: model.n_named],
         neutral=face.vertices,
@@ -44,8 +64,3 @@ def build_rig(face: AlignedFace) -> Rig:
         pose=np.zeros(model.n_named),
         report={"seconds": time.perf_counter() - started},
     )
-
-
-def _still_vertices(model: MorphableModel) -> np.ndarray:
-    motion = np.abs(model.expression[: model.n_named]).max(axis=(0, 2))
-    return np.flatnonzero(motion < MOVES_MM)

@@ -1,0 +1,121 @@
+"""The expression of a picture: taken out of the neutral face, and kept as a pose."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from toongeo import align_face, build_rig, fit_3dmm, make_avatar, neutral_face
+from toongeo.model.expression_features import FEATURE_OF, FEATURES, REMOVED, SIGNS
+from toongeo.pipeline.rig.fit_pose import fit_pose
+
+SMILE = {"mouthSmileLeft": 0.9, "mouthSmileRight": 0.8, "jawOpen": 0.5, "mouthUpperUpLeft": 0.2, "eyeWideLeft": 0.9}
+
+
+def posed(face, weights):
+    """The face of the model itself with an expression: its neutral is known."""
+    model = face.model
+    expression = np.zeros(len(model.expression))
+    for name, weight in weights.items():
+        expression[model.expression_index(name)] = weight
+    fit = dataclasses.replace(face.fit, expression=expression)
+    return dataclasses.replace(face, fit=fit, vertices=fit.vertices)
+
+
+@pytest.fixture(scope="module")
+def face(cartoon):
+    img, landmarks = cartoon("moustache_man")
+    return align_face(fit_3dmm(img, landmarks), landmarks)
+
+
+def lip_gap(model, V):
+    """Distances of the inner lips (61-67, 62-66, 63-65)."""
+    return np.linalg.norm(V[model.landmarks[[61, 62, 63]]] - V[model.landmarks[[67, 66, 65]]], axis=1)
+
+
+def test_the_tables_speak_of_our_expressions(model):
+    names = set(model.expression_names[: model.n_named])
+    assert names > REMOVED and set(FEATURE_OF) < names and set(FEATURE_OF.values()) == set(FEATURES)
+    assert set().union(*SIGNS.values()) <= REMOVED
+
+
+def test_a_smile_of_the_model_is_taken_out_to_its_neutral_face(face, model):
+    """Where the aligned face is the fitted one, what inverse transfer must give is known: the model without it."""
+    neutral = neutral_face(posed(face, SMILE))
+    expected = posed(face, {"eyeWideLeft": 0.9})
+    skin = face.region("face")
+    moved = np.linalg.norm(posed(face, SMILE).vertices - expected.vertices, axis=1)[skin]
+    error = np.linalg.norm(neutral.vertices - expected.vertices, axis=1)[skin]
+    assert np.sqrt((error**2).mean()) < 0.02 * np.sqrt((moved**2).mean())
+    np.testing.assert_array_equal(neutral.fit.expression, expected.fit.expression)
+    np.testing.assert_allclose(lip_gap(model, neutral.vertices), lip_gap(model, expected.vertices), atol=0.05)
+
+
+def test_a_moved_face_keeps_its_own_features(face, rng):
+    """The aligned face differs from the model smoothly; without the smile it differs from the model's as much."""
+    smiling = posed(face, SMILE)
+    stretch = lambda V: V * [1.2, 1.1, 1.0]  # noqa: E731
+    neutral = neutral_face(dataclasses.replace(smiling, vertices=stretch(smiling.vertices)))
+    expected = stretch(posed(face, {"eyeWideLeft": 0.9}).vertices)
+    skin = face.region("face")
+    error = np.linalg.norm(neutral.vertices - expected, axis=1)[skin]
+    moved = np.linalg.norm(stretch(smiling.vertices) - expected, axis=1)[skin]
+    assert np.sqrt((error**2).mean()) < 0.15 * np.sqrt((moved**2).mean())
+
+
+@pytest.mark.parametrize(
+    "weights", [{}, {"mouthSmileLeft": 0.2, "jawOpen": 0.3}, {"eyeWideLeft": 1, "browDownLeft": 1}]
+)
+def test_what_may_be_the_face_itself_is_left_in_it(face, weights):
+    same = posed(face, weights)
+    assert neutral_face(same) is same
+
+
+def test_removal_grows_steadily_with_the_sign(face):
+    """No jump: a little more of a smile takes a little more of it out."""
+    gaps = [
+        lip_gap(face.model, neutral_face(posed(face, {"jawOpen": w})).vertices)[1] for w in (0.3, 0.301, 0.599, 0.6)
+    ]
+    assert abs(gaps[0] - gaps[1]) < 0.2 and abs(gaps[2] - gaps[3]) < 0.2 and gaps[3] < 0.2 * gaps[0]
+
+
+def test_a_model_without_these_expressions_is_left_alone(face, model):
+    other = dataclasses.replace(model, expression_names=tuple(f"mode{k}" for k in range(64)))
+    foreign = dataclasses.replace(posed(face, SMILE), model=other)
+    assert neutral_face(foreign) is foreign
+
+
+def test_the_pose_of_a_rigs_own_face_is_its_weights(face, rng):
+    rig = build_rig(face)
+    weights = rng.random(46) * (rng.random(46) < 0.3)
+    found = fit_pose(rig, rig.vertices(weights), face.region("skin"))
+    shown = rig.vertices(found) - rig.vertices(weights)
+    assert np.abs(shown[face.region("skin")]).max() < 0.05
+    np.testing.assert_allclose(found, weights, atol=0.03)
+    np.testing.assert_array_equal(fit_pose(rig, rig.neutral, face.region("skin")), 0)
+
+
+def test_a_pose_stays_within_its_bounds(face):
+    rig = build_rig(face)
+    beyond = fit_pose(rig, rig.vertices({"jawOpen": 1.7, "mouthSmileLeft": -0.5}), face.region("skin"))
+    assert beyond.min() >= 0 and beyond.max() <= 1 and beyond[rig.names.index("jawOpen")] > 0.99
+
+
+def test_a_pose_of_another_mesh_is_refused(face):
+    with pytest.raises(ValueError, match=r"vertices: expected shape \(\d+, 3\) as the rig has, got \(5, 3\)"):
+        fit_pose(build_rig(face), np.zeros((5, 3)), np.ones(5, bool))
+
+
+def test_the_avatar_is_at_rest_and_its_pose_is_the_picture(cartoon, model):
+    """The astronaut smiles: the neutral face has its mouth shut, the pose brings back the face of the picture."""
+    img, landmarks = cartoon("astronaut")
+    smiling = make_avatar(img, landmarks, texture_size=64)
+    skin = smiling.face.region("face")
+    motion = np.linalg.norm(smiling.face.vertices - smiling.vertices(), axis=1)[skin]
+    left = np.linalg.norm(smiling.face.vertices - smiling.vertices(smiling.rig.pose), axis=1)[skin]
+    assert np.sqrt((left**2).mean()) < 0.2 * np.sqrt((motion**2).mean())
+    assert lip_gap(model, smiling.vertices())[1] < 0.2 * lip_gap(model, smiling.face.vertices)[1]
+    assert 100 * smiling.report.aligned["inner51"] <= 0.1  # the face of the picture still meets the landmarks
+    as_drawn = make_avatar(img, landmarks, texture_size=64, neutral=False)
+    np.testing.assert_array_equal(as_drawn.vertices(), as_drawn.face.vertices)
+    np.testing.assert_array_equal(as_drawn.rig.pose, 0)

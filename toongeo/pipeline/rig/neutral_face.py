@@ -1,0 +1,92 @@
+"""A face without the expression of its picture."""
+
+import dataclasses
+
+import numpy as np
+
+from toongeo.geometry import DeformationTransfer, laplacian_align
+from toongeo.model import MorphableModel
+from toongeo.model.expression_features import REMOVED, SIGNS
+from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
+from toongeo.pipeline.align.rim_anchors import rim_path
+from toongeo.pipeline.rig.still_vertices import still_vertices
+
+SURE = (0.3, 0.6)  # weights of a sign from which an expression begins to be removed, and is removed wholly
+WEIGHT = 1e3  # of the anchors on the lips: they are met to about a hundredth of a millimetre
+
+
+def neutral_face(face: AlignedFace) -> AlignedFace:
+    """The aligned face with its mouth at rest: the smile or the open jaw of the picture taken out.
+
+    An aligned face has left the model's space, so its expression cannot be subtracted. It is removed by inverse
+    deformation transfer: the gradients from the fitted model face with the expression to the same without it are
+    carried over to the aligned face. The lips then get the gap that the model's have.
+
+    A fit explains a drawing by both identity and expression, and what it calls an expression is often the face: large
+    eyes are "wide", full cheeks "puffed". Only the mouth is therefore brought to rest, and only where it clearly is
+    not: it smiles, is open, bares its teeth or purses its lips (the signs in ``expression_features.csv``, by their
+    weights). All that the fit found about the mouth then goes at once; a part of a smile would be a grimace. Shut eyes
+    stay shut: what is behind them was never seen.
+
+    Parameters
+    ----------
+    face : AlignedFace
+
+    Returns
+    -------
+    AlignedFace
+        Its ``fit`` has the rest of the expression. The same object, if there is nothing to remove.
+    """
+    model, expression = face.model, face.fit.expression.copy()
+    share = _share(model, expression)
+    mouth = [k for k, name in enumerate(model.expression_names[: model.n_named]) if name in REMOVED]
+    if share == 0 or not mouth:
+        return face
+    expression[mouth] *= 1 - share
+    fit = dataclasses.replace(face.fit, expression=expression)
+    transfer = DeformationTransfer(
+        face.fit.vertices, model.faces, face.vertices, pinned=still_vertices(model), align=True
+    )
+    V = _lips_as(model, fit.vertices, transfer(fit.vertices), share)
+    return dataclasses.replace(face, vertices=keep_teeth_inside(model, V), fit=fit)
+
+
+def _share(model: MorphableModel, expression: np.ndarray) -> float:
+    """How much of the expression is to go, in [0, 1], by its strongest sign."""
+    weights = dict(zip(model.expression_names, expression.tolist(), strict=True))
+    strongest = max(np.mean([weights.get(name, 0.0) for name in names]) for names in SIGNS.values())
+    return float(np.clip((strongest - SURE[0]) / (SURE[1] - SURE[0]), 0, 1))
+
+
+def _lips_as(model: MorphableModel, rest: np.ndarray, V: np.ndarray, share: float) -> np.ndarray:
+    """Vertices with the gap between the lips as in ``rest`` (n, 3), in proportion to the mouth, by the share."""
+    upper, lower = (rim_path(model, f"lip_{lip}_inner") for lip in ("upper", "lower"))
+    width = [np.linalg.norm(X[upper[-1]] - X[upper[0]]) for X in (V, rest)]
+    patch = (model.region("mouth") | model.region("mouth_cavity"))[model.faces].all(1)
+    used, local = np.unique(model.faces[patch], return_inverse=True)
+    border = np.intersect1d(used, model.faces[~patch])
+    anchors, targets = [border], [V[border]]
+    for rim, other in ((upper, lower), (lower, upper)):
+        inner = rim[1:-1]  # the corners belong to both
+        too_far = (_across(V, rim, other) - width[0] / width[1] * _across(rest, rim, other))[1:-1]
+        anchors.append(inner)
+        targets.append(V[inner] + 0.5 * share * too_far)
+    at = np.concatenate(anchors)
+    result = V.copy()
+    result[used] = laplacian_align(
+        V[used], local.reshape(-1, 3), np.searchsorted(used, at), np.vstack(targets), weight=WEIGHT
+    )
+    return result
+
+
+def _across(V: np.ndarray, rim: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """From each vertex of a rim (k, 3) to the place as far along the other."""
+    at, there = _along(V[rim]), _along(V[other])
+    return np.column_stack([np.interp(at, there, V[other, axis]) for axis in range(3)]) - V[rim]
+
+
+def _along(path: np.ndarray) -> np.ndarray:
+    """Length along a path of points (k, 3) up to each, as a share of the whole."""
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
+    return np.asarray(length / length[-1])

@@ -1,0 +1,27 @@
+"""What no expression moves."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from toongeo.model import MorphableModel
+
+MOVES_MM = 0.05  # what moves less than this in every expression is held still
+
+
+@lru_cache(maxsize=4)
+def still_vertices(model: MorphableModel) -> np.ndarray:
+    """Vertices (p,) that no named expression moves: skull, neck, ears.
+
+    Examples
+    --------
+    >>> from toongeo.model import default_model
+    >>> model = default_model()
+    >>> still = still_vertices(model)
+    >>> bool(model.region("scalp")[still].any()), bool(model.region("lips")[still].any())
+    (True, False)
+    """
+    motion = np.abs(model.expression[: model.n_named]).max(axis=(0, 2))
+    still = np.flatnonzero(motion < MOVES_MM)
+    still.setflags(write=False)
+    return still
