@@ -27,8 +27,9 @@ def add_rows(total: np.ndarray, rows: np.ndarray, weights: np.ndarray) -> None:
     """
     active = np.flatnonzero(weights)
     if len(active) > MANY * len(rows):
+        span = slice(active[0], active[-1] + 1)
         with one_thread():
-            total += weights.astype(np.float32) @ rows
+            total += weights[span].astype(np.float32) @ rows[span]
         return
     for row in active:
         saxpy(rows[row], total, a=weights[row])

@@ -13,6 +13,7 @@ from toongeo.pipeline.align.rim_anchors import rim_path
 from toongeo.pipeline.rig.still_vertices import still_vertices
 
 SURE = (0.3, 0.6)  # weights of a sign from which an expression begins to be removed, and is removed wholly
+PARTED = (0.1, 0.2)  # the same for the gap between the lips, in widths of the mouth
 WEIGHT = 1e3  # of the anchors on the lips: they are met to about a hundredth of a millimetre
 
 
@@ -26,8 +27,8 @@ def neutral_face(face: AlignedFace) -> AlignedFace:
     A fit explains a drawing by both identity and expression, and what it calls an expression is often the face: large
     eyes are "wide", full cheeks "puffed". Only the mouth is therefore brought to rest, and only where it clearly is
     not: it smiles, is open, bares its teeth or purses its lips (the signs in ``expression_features.csv``, by their
-    weights). All that the fit found about the mouth then goes at once; a part of a smile would be a grimace. Shut eyes
-    stay shut: what is behind them was never seen.
+    weights), or there is a gap between the lips. All that the fit found about the mouth then goes at once; a part of a
+    smile would be a grimace. Shut eyes stay shut: what is behind them was never seen.
 
     Parameters
     ----------
@@ -39,7 +40,7 @@ def neutral_face(face: AlignedFace) -> AlignedFace:
         Its ``fit`` has the rest of the expression. The same object, if there is nothing to remove.
     """
     model, expression = face.model, face.fit.expression.copy()
-    share = _share(model, expression)
+    share = max(_by_signs(model, expression), _by_gap(model, face.vertices))
     mouth = [k for k, name in enumerate(model.expression_names[: model.n_named]) if name in REMOVED]
     if share == 0 or not mouth:
         return face
@@ -52,11 +53,22 @@ def neutral_face(face: AlignedFace) -> AlignedFace:
     return dataclasses.replace(face, vertices=keep_teeth_inside(model, V), fit=fit)
 
 
-def _share(model: MorphableModel, expression: np.ndarray) -> float:
-    """How much of the expression is to go, in [0, 1], by its strongest sign."""
+def _by_signs(model: MorphableModel, expression: np.ndarray) -> float:
+    """How much of the expression is to go, in [0, 1], by its strongest sign; 0 for a model that has none of them."""
     weights = dict(zip(model.expression_names, expression.tolist(), strict=True))
-    strongest = max(np.mean([weights.get(name, 0.0) for name in names]) for names in SIGNS.values())
-    return float(np.clip((strongest - SURE[0]) / (SURE[1] - SURE[0]), 0, 1))
+    strongest = max(float(np.mean([weights.get(name, 0.0) for name in names])) for names in SIGNS.values())
+    return _ramp(strongest, SURE)
+
+
+def _by_gap(model: MorphableModel, V: np.ndarray) -> float:
+    """The same by how far the lips are parted: drawings open mouths in ways that no expression of the model has."""
+    upper, lower = rim_path(model, "lip_upper_inner"), rim_path(model, "lip_lower_inner")
+    gap = np.linalg.norm(V[upper][:, None] - V[lower], axis=2).min(1).max()
+    return _ramp(float(gap / np.linalg.norm(V[upper[-1]] - V[upper[0]])), PARTED)
+
+
+def _ramp(value: float, limits: tuple[float, float]) -> float:
+    return float(np.clip((value - limits[0]) / (limits[1] - limits[0]), 0, 1))
 
 
 def _lips_as(model: MorphableModel, rest: np.ndarray, V: np.ndarray, share: float) -> np.ndarray:
@@ -69,7 +81,7 @@ def _lips_as(model: MorphableModel, rest: np.ndarray, V: np.ndarray, share: floa
     anchors, targets = [border], [V[border]]
     for rim, other in ((upper, lower), (lower, upper)):
         inner = rim[1:-1]  # the corners belong to both
-        too_far = (_across(V, rim, other) - width[0] / width[1] * _across(rest, rim, other))[1:-1]
+        too_far = (_across(model, V, rim, other) - width[0] / width[1] * _across(model, rest, rim, other))[1:-1]
         anchors.append(inner)
         targets.append(V[inner] + 0.5 * share * too_far)
     at = np.concatenate(anchors)
@@ -80,9 +92,9 @@ def _lips_as(model: MorphableModel, rest: np.ndarray, V: np.ndarray, share: floa
     return result
 
 
-def _across(V: np.ndarray, rim: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """From each vertex of a rim (k, 3) to the place as far along the other."""
-    at, there = _along(V[rim]), _along(V[other])
+def _across(model: MorphableModel, V: np.ndarray, rim: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """From each vertex of a rim (k, 3) to the place on the other that it meets when the template's mouth closes."""
+    at, there = _along(model.mean[rim]), _along(model.mean[other])
     return np.column_stack([np.interp(at, there, V[other, axis]) for axis in range(3)]) - V[rim]
 
 
