@@ -20,8 +20,10 @@ from toongeo.pipeline import (
     close_lids,
     fit_3dmm,
     fit_eyes,
+    hang_teeth,
     parse_face,
     photometric_fit,
+    seal_lips,
     snap_eyes,
 )
 from toongeo.pipeline.rig.line_sockets import line_sockets
@@ -92,7 +94,7 @@ def make_avatar(
     clock.start("align")
     face = align_face(fit, landmarks)
     clock.start("rig")
-    rig = close_lids(face, build_rig(face))
+    rig = close_lids(face, hang_teeth(face, seal_lips(face, build_rig(face))))
     clock.start("eyes")
     eyes = fit_eyes(face, rig)
     rig = line_sockets(face, clear_lids(face, rig, eyes), eyes)
