@@ -37,12 +37,11 @@ from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
-from toongeo.pipeline import hang_teeth as hang_teeth
+from toongeo.pipeline import fit_mouth as fit_mouth
 from toongeo.pipeline import parse_face as parse_face
 from toongeo.pipeline import photometric_fit as photometric_fit
 from toongeo.pipeline import rendered_picture as rendered_picture
 from toongeo.pipeline import residual_map as residual_map
-from toongeo.pipeline import seal_lips as seal_lips
 from toongeo.pipeline import snap_eyes as snap_eyes
 from toongeo.pipeline import texture_coordinates as texture_coordinates
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor

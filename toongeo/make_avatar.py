@@ -20,10 +20,9 @@ from toongeo.pipeline import (
     close_lids,
     fit_3dmm,
     fit_eyes,
-    hang_teeth,
+    fit_mouth,
     parse_face,
     photometric_fit,
-    seal_lips,
     snap_eyes,
 )
 from toongeo.pipeline.rig.line_sockets import line_sockets
@@ -94,7 +93,7 @@ def make_avatar(
     clock.start("align")
     face = align_face(fit, landmarks)
     clock.start("rig")
-    rig = close_lids(face, hang_teeth(face, seal_lips(face, build_rig(face))))
+    rig = close_lids(face, fit_mouth(face, build_rig(face)))
     clock.start("eyes")
     eyes = fit_eyes(face, rig)
     rig = line_sockets(face, clear_lids(face, rig, eyes), eyes)

@@ -17,9 +17,8 @@ from toongeo.pipeline.rig.build_rig import build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
 from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
-from toongeo.pipeline.rig.hang_teeth import hang_teeth
+from toongeo.pipeline.rig.fit_mouth import fit_mouth
 from toongeo.pipeline.rig.rig import Rig
-from toongeo.pipeline.rig.seal_lips import seal_lips
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
 from toongeo.pipeline.texture.bake_texture import bake_texture
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
@@ -44,13 +43,12 @@ __all__ = [
     "diffuse_texture",
     "fit_3dmm",
     "fit_eyes",
-    "hang_teeth",
+    "fit_mouth",
     "train_ridge_regressor",
     "parse_face",
     "photometric_fit",
     "rendered_picture",
     "residual_map",
-    "seal_lips",
     "snap_eyes",
     "texture_coordinates",
 ]

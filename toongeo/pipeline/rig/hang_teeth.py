@@ -27,10 +27,10 @@ def hang_teeth(face: AlignedFace, rig: Rig) -> Rig:
     """Keep the upper teeth in the skull, let the lower ones and the tongue go as far as the chin does, all inside.
 
     Transfer turns a loose part as on the template, but does not tell how far it goes. The skin of the chin does: the
-    displacement of a part's middle is that of the template, times the ratio of how far the chins go. Where an expression
-    at 1, or ``mouthClose`` with ``jawOpen``, would have a part come through the skin, the part goes back as a whole, on
-    the way to where the middle of the tongue is at rest, until it does not; the upper teeth, which no expression moves,
-    do so in the neutral face. The tongue may come out in ``tongueOut``.
+    displacement of a part's middle is that of the template, times the ratio of how far the chins go. Where an
+    expression at 1, or ``mouthClose`` with ``jawOpen``, would have a part come through the skin, the part goes back as
+    a whole, on the way to where the middle of the tongue is at rest, until it does not; the upper teeth, which no
+    expression moves, do so in the neutral face. The tongue may come out in ``tongueOut``.
 
     Parameters
     ----------

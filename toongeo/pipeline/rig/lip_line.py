@@ -48,11 +48,16 @@ class LipLine:
     follows: np.ndarray
     spread: np.ndarray
 
-    def moved(self, V: np.ndarray, upper: np.ndarray, lower: np.ndarray) -> np.ndarray:
-        """Vertices ``V`` (n, 3) with the lips moved by ``upper`` (u, 3) and ``lower`` (l, 3), which agree at the ends."""
-        moved = V.copy()
-        moved[self.follows] += self.spread @ np.vstack([upper, lower[1:-1]])
-        return moved
+
+def along(path: np.ndarray) -> np.ndarray:
+    """Length along a path of points (k, 3) up to each, as a share of the whole."""
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
+    return np.asarray(length / length[-1])
+
+
+def interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Points (k, 3) at the shares `at` (k,), between values (j, 3) at the `known` ones (j,)."""
+    return np.column_stack([np.interp(at, known, values[:, axis]) for axis in range(values.shape[1])])
 
 
 @lru_cache(maxsize=4)
@@ -108,6 +113,6 @@ def _sides(model: MorphableModel) -> tuple[np.ndarray, np.ndarray]:
     while (after := following[loop[-1]]) != loop[0]:
         loop.append(after)
     far = int(x[loop].argmax())
-    paths = np.array(loop[: far + 1]), np.array([loop[0], *loop[:far - 1:-1]])
+    paths = np.array(loop[: far + 1]), np.array([loop[0], *loop[: far - 1 : -1]])
     upper, lower = sorted(paths, key=lambda path: -model.mean[path, 1].mean())
     return upper, lower
