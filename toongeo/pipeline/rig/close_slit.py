@@ -16,8 +16,8 @@ from toongeo.pipeline.rig.rig import Rig
 
 CLOSED = 0.06  # of the mouth's width: a mouth whose lips are less apart in the picture is drawn closed
 ORDERED = 0.01  # of the mouth's width: lips that are less apart in the picture keep some of their distance in depth
-OVERLAP = 0.01  # of the mouth's width: by which the inner sides of closed lips overlap
-BEHIND_MM = (0.3, 1.2, 4.0, 10.0)  # on the template, from the line: where the overlap begins, is full, fades, ends
+OVERLAP = 0.025  # of the mouth's width: by which the inner sides of closed lips overlap
+BEHIND_MM = (0.1, 0.8, 4.0, 10.0)  # on the template, from the line: where the overlap begins, is full, fades, ends
 
 
 def close_slit(face: AlignedFace, rig: Rig) -> Rig:
@@ -75,7 +75,7 @@ def _overlap(model: MorphableModel, line: LipLine, V: np.ndarray, up: np.ndarray
         *_inner_sides(model), (line.upper, line.lower), (1.0, -1.0), strict=True
     ):
         at = along(V[path])
-        target = np.interp(at, at_lower, meeting / 2) - sign * overlap * np.minimum(1, 10 * np.minimum(at, 1 - at))
+        target = np.interp(at, at_lower, meeting / 2) - sign * overlap
         way = target - V[path] @ up
         V[inner] += (share * way[column])[:, None] * up
 

@@ -9,11 +9,11 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.lip_line import LipLine, along, interpolated, lip_line
 from toongeo.pipeline.rig.rig import Rig
 
-GAP = 0.003  # of the mouth's width, left between closed lips: what touches counts as crossing
+GAP = 0.004  # of the mouth's width, left between closed lips: what touches counts as crossing
 UPPER_SHARE = 0.3  # of the way to the lower lip that the upper one goes to meet it
-CORNER = 0.1  # of the length of a lip: where its gap begins to fade out towards the corner; its shifts do so at half
-SPREAD = 0.08  # of the length of a lip: over which a shift fades out along it
-CONTACT = 0.02  # of the mouth's width: only where its edge is so near to the other lip can the red of a lip cross it
+CORNER = 0.08  # of the length of a lip: where its gap begins to fade out towards the corner; its shifts do so at half
+SPREAD = 0.1  # of the length of a lip: over which a shift fades out along it
+CONTACT = 0.04  # of the mouth's width: only where its edge is so near to the other lip can the red of a lip cross it
 MOVES_MM = 0.3  # expressions that move the lips less leave them as they are
 ROUNDS = 2  # shifted lips lie elsewhere along each other; the second round sees to what this changes
 
@@ -23,7 +23,7 @@ def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
 
     Deformation transfer keeps rotations and stretches, not contacts. ``mouthClose``, a corrective of ``jawOpen``, is
     given the motion that brings the lines where the lips end together, all along: at 1, with ``jawOpen`` at 1, they
-    are 0.3 % of the mouth's width apart, also when the neutral mouth is open. In every other expression at 1 no point
+    are 0.4 % of the mouth's width apart, also when the neutral mouth is open. In every other expression at 1 no point
     of a lip comes closer to the other lip, seen from the front, than twice this or than it was in the neutral face;
     where one does both give way, half each. So they do in a neutral face whose lips cross more than those of the
     aligned one. The face around follows as a thin plate, and what lies farther away stays.
