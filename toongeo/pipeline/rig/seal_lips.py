@@ -14,6 +14,7 @@ UPPER_SHARE = 0.3  # of the way to the lower lip that the upper one goes to meet
 CORNER = 0.08  # of the length of a lip: where its gap begins to fade out towards the corner; its shifts do so at half
 SPREAD = 0.1  # of the length of a lip: over which a shift fades out along it
 CONTACT = 0.04  # of the mouth's width: only where its edge is so near to the other lip can the red of a lip cross it
+CROSSED = 0.02  # of the mouth's width: by how much points of a drawing may have the lips cross in the neutral face
 MOVES_MM = 0.3  # expressions that move the lips less leave them as they are
 ROUNDS = 2  # shifted lips lie elsewhere along each other; the second round sees to what this changes
 
@@ -26,7 +27,8 @@ def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
     are 0.4 % of the mouth's width apart, also when the neutral mouth is open. In every other expression at 1 no point
     of a lip comes closer to the other lip, seen from the front, than twice this or than it was in the neutral face;
     where one does both give way, half each. So they do in a neutral face whose lips cross more than those of the
-    aligned one. The face around follows as a thin plate, and what lies farther away stays.
+    aligned one, or by more than points that are set by hand do. The face around follows as a thin plate, and what
+    lies farther away stays.
 
     Parameters
     ----------
@@ -42,7 +44,9 @@ def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
     started = time.perf_counter()
     line, neutral, deltas = lip_line(face.model), rig.neutral.copy(), rig.deltas.copy()
     up = _up(line, neutral)
-    neutral[line.follows] += line.spread @ _parting(line, neutral, up, _heights(line, face.vertices, up))
+    crossed = -CROSSED * np.linalg.norm(neutral[line.upper[-1]] - neutral[line.upper[0]])
+    drawn = [np.maximum(heights, crossed) for heights in _heights(line, face.vertices, up)]
+    neutral[line.follows] += line.spread @ _parting(line, neutral, up, drawn)
     at_rest = _heights(line, neutral, up)
     close, jaw = (rig.names.index(name) for name in ("mouthClose", "jawOpen"))
     moves = np.abs(deltas[:, line.vertices]).max((1, 2)) > MOVES_MM
