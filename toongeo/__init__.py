@@ -6,7 +6,8 @@ The stages, in the order in which :func:`make_avatar` calls them:
 2. :func:`fit_3dmm` - a morphable model posed and shaped by the landmarks (and by the picture: :func:`photometric_fit`).
 3. :func:`parse_face`, :func:`snap_eyes` - the parts of the picture, and eye landmarks that lie on the lids.
 4. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.
-5. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face.
+5. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face; :func:`fit_mouth` - lips
+   that meet and do not cross, teeth that stay behind them.
 6. :func:`fit_eyes`, :func:`close_lids`, :func:`clear_lids` - eyeballs, and lids that close over them.
 7. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
 8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
@@ -68,6 +69,7 @@ __getattr__, __dir__, __all__ = attach(
         "fit_eyes": "pipeline",
         "close_lids": "pipeline",
         "clear_lids": "pipeline",
+        "fit_mouth": "pipeline",
         "Eyes": "pipeline",
         "CaricatureFit": "caricature",
         "CaricatureOptions": "caricature",

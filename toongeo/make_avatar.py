@@ -21,6 +21,7 @@ from toongeo.pipeline import (
     close_lids,
     fit_3dmm,
     fit_eyes,
+    fit_mouth,
     neutral_face,
     parse_face,
     photometric_fit,
@@ -104,7 +105,7 @@ def make_avatar(
     face = align_face(fit, landmarks)
     clock.start("rig")
     at_rest = neutral_face(face) if neutral else face
-    rig = close_lids(at_rest, build_rig(at_rest, gain=gain))
+    rig = close_lids(at_rest, fit_mouth(at_rest, build_rig(at_rest, gain=gain)))
     clock.start("eyes")
     eyes = fit_eyes(at_rest, rig)
     rig = line_sockets(at_rest, clear_lids(at_rest, rig, eyes), eyes)

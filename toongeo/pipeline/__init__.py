@@ -18,6 +18,7 @@ from toongeo.pipeline.rig.build_rig import build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
 from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
+from toongeo.pipeline.rig.fit_mouth import fit_mouth
 from toongeo.pipeline.rig.neutral_face import neutral_face
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
@@ -45,6 +46,7 @@ __all__ = [
     "diffuse_texture",
     "fit_3dmm",
     "fit_eyes",
+    "fit_mouth",
     "train_ridge_regressor",
     "neutral_face",
     "parse_face",
