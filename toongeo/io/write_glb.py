@@ -2,6 +2,7 @@
 
 import os
 
+from toongeo.io._glb_scene import Picture
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.encode_glb import encode_glb
 from toongeo.io.scene import Scene
@@ -10,7 +11,14 @@ __all__ = ["write_glb"]
 
 
 def write_glb(
-    path: str | os.PathLike[str], scene: Scene, *, normal_deltas: bool = False, tolerance_mm: float = 1e-3
+    path: str | os.PathLike[str],
+    scene: Scene,
+    *,
+    normal_deltas: bool = False,
+    tolerance_mm: float = 1e-3,
+    quantize: bool = False,
+    picture: Picture = "png",
+    attachment: bytes | None = None,
 ) -> None:
     """Write a ``.glb``; atomically, and the same bytes for the same scene.
 
@@ -18,7 +26,7 @@ def write_glb(
     ----------
     path
         File to write.
-    scene, normal_deltas, tolerance_mm
+    scene, normal_deltas, tolerance_mm, quantize, picture, attachment
         As of :func:`encode_glb`.
 
     Raises
@@ -26,7 +34,7 @@ def write_glb(
     OSError
         If the path cannot be written; nothing half-written remains.
     ValueError
-        If ``tolerance_mm`` is negative.
+        If ``tolerance_mm`` is negative, or ``picture`` is unknown.
 
     Examples
     --------
@@ -40,4 +48,12 @@ def write_glb(
     >>> read_glb(path).json["meshes"][0]["extras"]
     {'targetNames': ['up']}
     """
-    atomic_write({path: encode_glb(scene, normal_deltas=normal_deltas, tolerance_mm=tolerance_mm)})
+    content = encode_glb(
+        scene,
+        normal_deltas=normal_deltas,
+        tolerance_mm=tolerance_mm,
+        quantize=quantize,
+        picture=picture,
+        attachment=attachment,
+    )
+    atomic_write({path: content})
