@@ -46,6 +46,7 @@ def avatar_scene(
     shapes: Shapes | None = None,
     animation: SceneAnimation | None = None,
     textured: bool = True,
+    split: bool = True,
 ) -> Scene:
     """Head, teeth, tongue and eyeballs of an avatar.
 
@@ -64,6 +65,8 @@ def avatar_scene(
         Its only track is ``"head"``, (f, 46 + 8): weights of the rig in its order. :func:`demo_clip` makes one.
     textured : bool
         False: every mesh has the mean of its texture as its colour.
+    split : bool
+        False: teeth and tongue stay in the head, whose vertices keep their numbers unless it is cropped.
 
     Returns
     -------
@@ -72,8 +75,9 @@ def avatar_scene(
         without the regions of teeth and tongue has them in the head.
     """
     shapes = own_shapes(avatar.rig) if shapes is None else shapes
-    parts = head_parts(avatar.face.model, crop)
-    meshes = [_part(avatar, name, faces, shapes) for name, faces in parts.items()]
+    model = avatar.face.model
+    parts = head_parts(model, crop) if split else {"head": crop_faces(model, crop)}
+    meshes = [_part(avatar, name, faces, shapes, crop) for name, faces in parts.items()]
     meshes += [_eye(avatar.eyes, side, avatar.texture, shapes) for side in range(len(avatar.eyes.templates))]
     clip = None if animation is None else _tracks(avatar.rig, animation, shapes, meshes)
     return Scene(tuple(meshes if textured else map(_plain, meshes)), clip)
@@ -128,7 +132,7 @@ def weight_clip(rig: Rig, times: object, weights: object) -> SceneAnimation:
     return SceneAnimation(np.asarray(times, np.float64), {"head": given}, name="take")
 
 
-def _part(avatar: Avatar, name: str, kept: np.ndarray, shapes: Shapes) -> SceneMesh:
+def _part(avatar: Avatar, name: str, kept: np.ndarray, shapes: Shapes, crop: Crop) -> SceneMesh:
     rig, model = avatar.rig, avatar.face.model
     used, faces = np.unique(model.faces[kept], return_inverse=True)
     used_uv, uv_faces = np.unique(model.uv_faces[kept], return_inverse=True)
@@ -141,7 +145,7 @@ def _part(avatar: Avatar, name: str, kept: np.ndarray, shapes: Shapes) -> SceneM
         uv=model.uv[used_uv],
         uv_faces=uv_faces.reshape(-1, 3),
         # A cut-out face is shaded like the whole head: its own normals would turn at the cut.
-        normals=vertex_normals(rig.neutral, model.faces)[used],
+        normals=vertex_normals(rig.neutral, model.faces)[used] if crop == "face" else None,
         texture=avatar.texture,
         targets=targets[moving] if moving.any() else None,
         target_names=tuple(shape for (shape, _), moves in zip(shapes, moving, strict=True) if moves),
@@ -186,7 +190,7 @@ def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[Sc
     names, weights = [name for name, _ in own_shapes(rig)], animation.weights["head"]
     free, tracks = set(names), {}
     for shape, mix in shapes:
-        if set(mix) <= free and all(weight == 1.0 for weight in mix.values()):
+        if mix and set(mix) <= free and all(weight == 1.0 for weight in mix.values()):
             tracks[shape] = weights[:, [names.index(name) for name in mix]].mean(axis=1)
             free -= set(mix)
     still = np.zeros(len(weights))

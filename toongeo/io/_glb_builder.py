@@ -73,7 +73,7 @@ class GlbBuilder:
         return content.replace(checksum_entry(NO_CHECKSUM), checksum_entry(hashlib.sha256(content).hexdigest()), 1)
 
     @staticmethod
-    def described(array: NDArray, bounds: bool, normalized: bool = False) -> dict[str, Any]:
+    def described(array: NDArray, bounds: bool = False, normalized: bool = False) -> dict[str, Any]:
         """An accessor's entry for an array, without the view it looks into."""
         columns = 1 if array.ndim == 1 else array.shape[1]
         entry = {"componentType": _CODES[array.dtype], "count": len(array), "type": _TYPES[columns]}

@@ -16,7 +16,8 @@ from toongeo.io.split_seams import split_seams
 Picture = Literal["png", "jpeg"]
 
 METRES = 1e-3  # glTF's unit in ours; its axes (+Y up, a face looks along +Z) are ours already
-SHORT, BYTE = 32767, 127  # what 1 is as a normalized integer of 16 or 8 bits
+STEPS = 4096  # of the greatest coordinate of a quantized mesh: 0.05 mm of a head
+BYTE = 127  # what 1 is as a normalized integer of 8 bits
 # Below this a change of a normal cannot be seen: 0.06 degrees.
 _NORMAL_TOLERANCE = 1e-3
 _SAMPLER = {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}  # trilinear, clamped
@@ -30,6 +31,8 @@ class GlbOptions:
     tolerance_mm: float = 1e-3
     quantize: bool = False
     picture: Picture = "png"
+    sparse: bool = True
+    root: str | None = None
 
 
 def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
@@ -38,8 +41,8 @@ def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
     if options.quantize:
         builder.use("KHR_mesh_quantization", required=True)
     for mesh in scene.meshes:
-        scale = _scale(mesh) if options.quantize else None
-        primitive = _primitive(builder, mesh, options, scale)
+        unit = _unit(mesh) if options.quantize else None
+        primitive = _primitive(builder, mesh, options, unit)
         primitive["material"] = _material(builder, mesh, textures, options.picture)
         k = len(mesh.target_names)
         index = builder.add(
@@ -50,9 +53,12 @@ def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
             extras={"targetNames": list(mesh.target_names)} if k else None,
         )
         pivot = None if mesh.pivot is None else (mesh.pivot * METRES).tolist()
-        size = None if scale is None else [scale * METRES] * 3
+        size = None if unit is None else [unit * METRES] * 3
         builder.add("nodes", name=mesh.name, mesh=index, translation=pivot, scale=size)
-    builder.json["scenes"] = [{"nodes": list(range(len(scene.meshes)))}]
+    nodes = list(range(len(scene.meshes)))
+    if options.root is not None:
+        nodes = [builder.add("nodes", name=options.root, children=nodes)]
+    builder.json["scenes"] = [{"nodes": nodes}]
     builder.json["scene"] = 0
     if scene.animation is not None:
         _animate(builder, scene.animation, [mesh.name for mesh in scene.meshes])
@@ -62,22 +68,20 @@ def _local(mesh: SceneMesh) -> NDArray[np.floating]:
     return mesh.vertices if mesh.pivot is None else mesh.vertices - mesh.pivot
 
 
-def _scale(mesh: SceneMesh) -> float:
-    """mm of the greatest coordinate or displacement: 1 as a normalized integer."""
-    farthest = np.abs(_local(mesh)).max()
-    if mesh.targets is not None:
-        farthest = max(farthest, np.abs(mesh.targets).max(initial=0))
-    return float(farthest) or 1.0
+def _unit(mesh: SceneMesh) -> float:
+    """mm that 1 is as an integer: small, so that no shape suffers, and so great that most displacements fit a byte."""
+    local, targets = np.abs(_local(mesh)).max(), np.zeros(1) if mesh.targets is None else np.abs(mesh.targets)
+    return float(max(local / STEPS, targets.max(initial=0) / np.iinfo(np.int16).max)) or 1.0
 
 
-def _primitive(builder: GlbBuilder, mesh: SceneMesh, options: GlbOptions, scale: float | None) -> dict[str, Any]:
+def _primitive(builder: GlbBuilder, mesh: SceneMesh, options: GlbOptions, unit: float | None) -> dict[str, Any]:
     uv_faces = mesh.faces if mesh.uv_faces is None else mesh.uv_faces
     vertex, uv, faces = split_seams(mesh.faces, uv_faces)
     base = _normals(mesh.vertices, mesh.faces)
     normals = base if mesh.normals is None else mesh.normals
-    whole = scale is not None
+    whole = unit is not None
     attributes = {
-        "POSITION": builder.accessor(_length(_local(mesh)[vertex], scale), VERTICES, bounds=True, normalized=whole),
+        "POSITION": builder.accessor(_length(_local(mesh)[vertex], unit), VERTICES, bounds=True),
         "NORMAL": builder.accessor(_normal(normals[vertex], whole), VERTICES, normalized=whole),
     }
     if mesh.uv is not None:
@@ -92,24 +96,23 @@ def _primitive(builder: GlbBuilder, mesh: SceneMesh, options: GlbOptions, scale:
         "indices": builder.accessor(faces.astype(index_type).ravel(), INDICES),
     }
     if mesh.target_names and mesh.targets is not None:
-        tolerance = options.tolerance_mm * (METRES if scale is None else SHORT / scale)
-        moved = _length(mesh.targets[:, vertex], scale)
-        targets = [{"POSITION": i} for i in add_targets(builder, moved, tolerance, bounds=True, normalized=whole)]
+        tolerance = options.tolerance_mm * (METRES if unit is None else 1 / unit)
+        moved = _length(mesh.targets[:, vertex], unit)
+        targets = [{"POSITION": i} for i in add_targets(builder, moved, tolerance, options.sparse, bounds=True)]
         if options.normal_deltas:
             turned = [(_normals(mesh.vertices + delta, mesh.faces) - base)[vertex] for delta in mesh.targets]
             stored = _normal(np.stack(turned), whole)
             tolerance = _NORMAL_TOLERANCE * (BYTE if whole else 1)
-            for entry, i in zip(
-                targets, add_targets(builder, stored, tolerance, bounds=False, normalized=whole), strict=True
-            ):
+            turns = add_targets(builder, stored, tolerance, options.sparse, normalized=whole)
+            for entry, i in zip(targets, turns, strict=True):
                 entry["NORMAL"] = i
         primitive["targets"] = targets
     return primitive
 
 
-def _length(array: NDArray[np.floating], scale: float | None) -> NDArray:
-    """Coordinates in mm as metres, or as integers of which 32767 is ``scale`` mm."""
-    return _f4(array * METRES) if scale is None else np.rint(array * (SHORT / scale)).astype("<i2")
+def _length(array: NDArray[np.floating], unit: float | None) -> NDArray:
+    """Coordinates in mm as metres, or as integers of which 1 is ``unit`` mm."""
+    return _f4(array * METRES) if unit is None else np.rint(array / unit).astype("<i2")
 
 
 def _normal(array: NDArray[np.floating], whole: bool) -> NDArray:

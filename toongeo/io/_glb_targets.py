@@ -18,50 +18,58 @@ class _Rows:
 
 
 def add_targets(
-    builder: GlbBuilder, deltas: NDArray, tolerance: float, *, bounds: bool, normalized: bool = False
+    builder: GlbBuilder,
+    deltas: NDArray,
+    tolerance: float,
+    sparse: bool,
+    *,
+    bounds: bool = False,
+    normalized: bool = False,
 ) -> list[int]:
-    """Accessors of deltas (k, n, 3), of the type they shall have in the file.
+    """Accessors of deltas (k, n, 3), of the type they shall have in the file; small 16-bit integers get 8 bits.
 
     A target stores all rows, or those beyond ``tolerance`` with their numbers, or those of a greater target, whose
     numbers it shares: whichever takes the fewest bytes. Expressions of a face mostly move the same part of the head.
+    Without ``sparse`` all store all rows.
     """
-    k, n = deltas.shape[:2]
+    n = deltas.shape[1]
     moved = (np.abs(deltas) > tolerance).any(axis=2)
     number = np.dtype("<u2" if n <= 65536 else "<u4")
-    row = 3 * deltas.itemsize
-    dense_row = row + -row % 4
     lists: list[_Rows] = []
-    accessors = [0] * k
+    accessors = [0] * len(deltas)
     for target in np.argsort(-moved.sum(axis=1), kind="stable"):  # the greatest first
-        count = int(moved[target].sum())
-        if count == 0:  # an accessor without buffer view is all zero (3.6.2.3)
-            zero = np.zeros((n, 3), deltas.dtype)
-            accessors[target] = builder.add("accessors", **builder.described(zero, bounds, normalized))
-            continue
-        fitting = [rows for rows in lists if not (moved[target] & ~rows.mask).any()]
-        shared = min(fitting, key=lambda rows: rows.count, default=None)
-        own_cost = count * (row + number.itemsize)
-        shared_cost = np.inf if shared is None else shared.count * row
-        if min(own_cost, shared_cost) >= n * dense_row:
-            kept = np.where(moved[target, :, None], deltas[target], 0).astype(deltas.dtype)
+        delta = deltas[target]
+        if delta.dtype == np.int16 and np.abs(delta).max() <= 127:
+            delta = delta.astype("<i1")
+        rows = _rows(builder, moved[target], lists, 3 * delta.itemsize, number) if sparse else None
+        stored = moved[target] if rows is None else rows.mask
+        kept = np.where(stored[:, None], delta, 0).astype(delta.dtype)
+        if rows is None:
             accessors[target] = builder.accessor(kept, VERTICES, bounds=bounds, normalized=normalized)
             continue
-        if shared is None or own_cost <= shared_cost:
-            view = builder.view(np.flatnonzero(moved[target]).astype(number).tobytes())
-            shared = _Rows(moved[target], count, view)
-            lists.append(shared)
-        accessors[target] = _sparse(builder, deltas[target], shared, number, bounds, normalized)
+        entry = None  # an accessor without buffer view is all zero (3.6.2.3)
+        if rows.count:
+            indices = {"bufferView": rows.view, "componentType": builder.described(np.zeros(1, number))["componentType"]}
+            values = {"bufferView": builder.view(delta[stored].tobytes())}
+            entry = {"count": rows.count, "indices": indices, "values": values}
+        accessors[target] = builder.add("accessors", **builder.described(kept, bounds, normalized), sparse=entry)
     return accessors
 
 
-def _sparse(
-    builder: GlbBuilder, delta: NDArray, rows: _Rows, number: np.dtype, bounds: bool, normalized: bool
-) -> int:
-    kept = np.where(rows.mask[:, None], delta, 0).astype(delta.dtype)
-    code = builder.described(np.zeros(0, number), False)["componentType"]
-    sparse = {
-        "count": rows.count,
-        "indices": {"bufferView": rows.view, "componentType": code},
-        "values": {"bufferView": builder.view(delta[rows.mask].tobytes())},
-    }
-    return builder.add("accessors", **builder.described(kept, bounds, normalized), sparse=sparse)
+def _rows(
+    builder: GlbBuilder, moved: NDArray[np.bool_], lists: list[_Rows], row: int, number: np.dtype
+) -> _Rows | None:
+    """The rows a target stores, of ``row`` bytes each: its own or a list that is there; None if all are cheaper."""
+    count = int(moved.sum())
+    if count == 0:
+        return _Rows(moved, 0, -1)
+    fitting = [rows for rows in lists if not (moved & ~rows.mask).any()]
+    shared = min(fitting, key=lambda rows: rows.count, default=None)
+    own_cost = count * (row + number.itemsize)
+    shared_cost = np.inf if shared is None else shared.count * row
+    if min(own_cost, shared_cost) >= len(moved) * (row + -row % 4):
+        return None
+    if shared is None or own_cost <= shared_cost:
+        shared = _Rows(moved, count, builder.view(np.flatnonzero(moved).astype(number).tobytes()))
+        lists.append(shared)
+    return shared

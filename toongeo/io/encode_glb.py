@@ -16,6 +16,8 @@ def encode_glb(
     tolerance_mm: float = 1e-3,
     quantize: bool = False,
     picture: Picture = "png",
+    sparse: bool = True,
+    root: str | None = None,
     attachment: bytes | None = None,
 ) -> bytes:
     """Binary glTF: a node a mesh, sparse float32 morph targets, embedded textures, one animation.
@@ -33,10 +35,14 @@ def encode_glb(
     tolerance_mm
         Displacements with no coordinate above this are not stored, unless they cost nothing.
     quantize
-        Positions and displacements as 16-bit, normals as 8-bit integers (``KHR_mesh_quantization``): half the size,
-        and off by at most 1/65,534 of the largest coordinate or displacement of their mesh, or by the tolerance.
+        Positions, displacements and normals as integers (``KHR_mesh_quantization``): less than half the size, and off
+        by at most 1/8,192 of the largest coordinate of their mesh, or by the tolerance.
     picture
         ``"png"``, or ``"jpeg"``, which is smaller and not exact.
+    sparse
+        False: every target stores every vertex, for readers that know no sparse accessors.
+    root
+        Name of a node above all others; :func:`glb_scene` does not read such files.
     attachment
         Bytes that :func:`read_glb` gives back and other programs do not look at.
 
@@ -55,5 +61,5 @@ def encode_glb(
     if picture not in get_args(Picture):
         raise ValueError(f"picture: expected 'png' or 'jpeg', got {picture!r}")
     builder = GlbBuilder()
-    add_scene(builder, scene, GlbOptions(normal_deltas, tolerance_mm, quantize, picture))
+    add_scene(builder, scene, GlbOptions(normal_deltas, tolerance_mm, quantize, picture, sparse, root))
     return builder.encode(attachment)
