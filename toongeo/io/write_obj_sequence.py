@@ -19,7 +19,8 @@ def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: st
     """Write ``000_neutral.obj`` and ``001_jawOpen.obj`` ... for every target, with one ``.mtl`` and its textures.
 
     All files have the same vertices and faces in the same order, so programs can blend between them. Of a target that
-    several meshes have, all move. Coordinates are rounded to 1e-5 mm. Characters of names that are not letters, digits, ``-`` or ``_`` become ``_``.
+    several meshes have, all move. Coordinates are rounded to 1e-5 mm. Characters of names that are not letters, digits,
+    ``-`` or ``_`` become ``_``.
 
     Parameters
     ----------
