@@ -31,6 +31,8 @@ __getattr__, __dir__, __all__ = attach(
         "read_landmarks": "io",
         "write_landmarks": "io",
         "default_model": "model",
+        "expression_weights": "model",
+        "preset": "model",
         "MorphableModel": "model",
         "ScaledOrthographicCamera": "render",
         "PerspectiveCamera": "render",
