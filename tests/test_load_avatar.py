@@ -179,11 +179,10 @@ def test_cut_and_changed_files_are_refused(small, tmp_path):
         changed = bytearray(content)
         changed[at] ^= 1 << int(rng.integers(8))
         damaged.append(bytes(changed))
-    for number, wrong in enumerate(damaged):
+    for wrong in damaged:
         (tmp_path / "a.glb").write_bytes(wrong)
         with pytest.raises(ValueError, match="path: "):
             load_avatar(tmp_path / "a.glb")
-            pytest.fail(f"case {number} was loaded")
 
 
 def test_forged_files_give_an_avatar_or_an_error(small, tmp_path):
