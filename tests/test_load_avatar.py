@@ -96,6 +96,13 @@ def test_what_only_some_fits_have_comes_back_too(avatar, tmp_path):
     assert {where for where, most in found.items() if most > 0} <= LENGTHS and max(found.values()) <= 1e-4
 
 
+def test_names_may_be_anything(avatar, tmp_path):
+    names = ("../../evil", '"><script>alert(1)</script>', "顔 \\ \n\0", "\ud800", *avatar.names[4:])
+    other = replace(avatar, rig=replace(avatar.rig, names=names))
+    other.save(tmp_path / "a.glb", animation=None)
+    assert load_avatar(tmp_path / "a.glb").rig.names == names
+
+
 def test_a_quantized_file_says_how_far_it_is_off(avatar, tmp_path):
     avatar.save(tmp_path / "a.glb", quantize=True)
     found = dict(differences(avatar, load_avatar(tmp_path / "a.glb")))
