@@ -237,6 +237,16 @@ def test_a_state_comes_back(model):
     assert back["f"].shape == (0, 2) and back["f"].dtype == np.float32
 
 
+@pytest.mark.parametrize("dtype", ["?", "u1", "i2", "i4", "f4", "i8", "f8"])
+@pytest.mark.parametrize("shape", [(), (5,), (0,), (3, 4), (0, 4), (4, 0), (1, 1), (2, 3, 4)])
+def test_arrays_come_back_to_the_last_bit(model, dtype, shape):
+    bits = np.random.default_rng(0).integers(0, 256, (*shape, 8), dtype=np.uint8)
+    array = (bits[..., 0] > 99) if dtype == "?" else np.frombuffer(bits.tobytes(), dtype)[: np.prod(shape, dtype=int)]
+    array = np.array(array).reshape(shape)
+    back = decode_state(encode_state({"a": array}, {}, model), {}, model)["a"]
+    assert (back.dtype, back.shape, back.tobytes()) == (array.dtype, array.shape, array.tobytes())
+
+
 @pytest.mark.parametrize(
     ("value", "message"),
     [
