@@ -131,7 +131,8 @@ class _Writer:
         if is_dataclass(value) and type(value) is CLASSES.get(type(value).__name__):
             parts = {field.name: getattr(value, field.name) for field in fields(value) if field.init}
             return {type(value).__name__: {name: self.node(v, f"{where}.{name}") for name, v in parts.items()}}
-        raise ValueError(f"{where}: expected numbers, texts, arrays or {', '.join(CLASSES)}, got {type(value)}")
+        kinds = f"numbers, texts, arrays or {', '.join(CLASSES)}"
+        raise ValueError(f"{where}: expected {kinds} in a loadable file, got {type(value)}")
 
     def _array(self, value: np.ndarray, where: str) -> dict[str, Any]:
         if value.dtype.kind not in "biuf":

@@ -41,8 +41,12 @@ def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = 
 
     Examples
     --------
-    >>> import toongeo as tg
-    >>> avatar = tg.load_avatar("face.glb")  # doctest: +SKIP
+    ``avatar = toongeo.load_avatar("face.glb")``; and of another file:
+
+    >>> load_avatar(__file__)  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+        ...
+    ValueError: path: expected a GLB (glTF 2.0), but ... is damaged or none (...)
     """
     document = read_glb(path)
     if document.attachment is None:

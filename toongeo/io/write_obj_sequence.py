@@ -38,6 +38,16 @@ def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: st
         If the stem is not of letters, digits, ``-`` and ``_``.
     OSError
         If the folder cannot be made or a file cannot be written; then none is.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from toongeo.io import SceneMesh
+    >>> up = {"targets": np.ones((1, 3, 3)), "target_names": ("up",)}
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> write_obj_sequence(folder, Scene((SceneMesh("triangle", np.eye(3), np.array([[0, 1, 2]]), **up),)))
+    >>> sorted(path.name for path in folder.iterdir())
+    ['000_neutral.obj', '001_up.obj', 'face.mtl']
     """
     if not re.fullmatch(r"[\w-]+", stem, re.ASCII):
         raise ValueError(f"stem: expected letters, digits, - and _, got {stem!r}")
