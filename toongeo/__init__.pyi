@@ -16,6 +16,7 @@ from toongeo.geometry import laplacian_align as laplacian_align
 from toongeo.io import read_image as read_image
 from toongeo.io import read_landmarks as read_landmarks
 from toongeo.io import write_landmarks as write_landmarks
+from toongeo.load_avatar import load_avatar as load_avatar
 from toongeo.make_avatar import make_avatar as make_avatar
 from toongeo.model import MorphableModel as MorphableModel
 from toongeo.model import default_model as default_model

@@ -1,7 +1,7 @@
 """A scene as Wavefront OBJ, for programs that keep no morph targets."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -37,25 +37,44 @@ def write_obj(path: str | os.PathLike[str], scene: Scene) -> None:
     path = Path(path)
     if path.suffix.lower() != ".obj":
         raise ValueError(f"path: expected a name that ends in .obj, got {path}")
+    atomic_write(obj_files(path, scene))
+
+
+def obj_files(path: Path, scene: Scene) -> dict[str | os.PathLike[str], bytes]:
+    """The files by path; the ``.obj`` last: whoever sees it sees the files it names."""
     pictures: dict[bytes, str] = {}
     files: dict[str | os.PathLike[str], bytes] = {}
     materials: list[str] = []
-    lines = ["# mm; +X the subject's left, +Y up, +Z out of the face", f"mtllib {path.stem}.mtl"]
+    for number, mesh in enumerate(scene.meshes):
+        materials += _material(f"material_{number}", mesh, path.stem, pictures, files, path.parent)
+    files[path.with_suffix(".mtl")] = ("\n".join(materials) + "\n").encode()
+    vertices = ("\n".join(_rows("v", mesh.vertices)) for mesh in scene.meshes)
+    files[path] = obj_text(obj_frames(scene, f"{path.stem}.mtl"), vertices)
+    return files
+
+
+def obj_text(frames: Iterable[tuple[str, str]], vertices: Iterable[str]) -> bytes:
+    """An ``.obj``: the lines of the vertices of each mesh in their frame."""
+    parts = [f"{before}{lines}\n{after}" for (before, after), lines in zip(frames, vertices, strict=True)]
+    return "".join(parts).encode()
+
+
+def obj_frames(scene: Scene, library: str) -> list[tuple[str, str]]:
+    """What stands before and after the vertices of each mesh; ``library`` is the file of the materials."""
+    frames: list[tuple[str, str]] = []
+    start = f"# mm; +X the subject's left, +Y up, +Z out of the face\nmtllib {library}\n"
     vertex = uv = 1
     for number, mesh in enumerate(scene.meshes):
-        material = f"material_{number}"
-        materials += _material(material, mesh, path.stem, pictures, files, path.parent)
-        lines += [f"o {_token(mesh.name)}", f"usemtl {material}", *_geometry(mesh, vertex, uv)]
+        before = f"{start}o {_token(mesh.name)}\nusemtl material_{number}\n"
+        frames.append((before, "\n".join(_faces(mesh, vertex, uv)) + "\n"))
+        start = ""
         vertex += len(mesh.vertices)
         uv += 0 if mesh.uv is None else len(mesh.uv)
-    files[path.with_suffix(".mtl")] = ("\n".join(materials) + "\n").encode()
-    files[path] = ("\n".join(lines) + "\n").encode()
-    atomic_write(files)  # the .obj last: whoever sees it sees the files it names
+    return frames
 
 
-def _geometry(mesh: SceneMesh, vertex: int, uv: int) -> Iterator[str]:
-    """Lines of one object whose first vertex and uv have these (1-based) numbers in the file."""
-    yield from _rows("v", mesh.vertices)
+def _faces(mesh: SceneMesh, vertex: int, uv: int) -> Iterator[str]:
+    """Lines of uv and faces of an object whose first vertex and uv have these (1-based) numbers in the file."""
     corners = (mesh.faces + vertex).tolist()
     yield "s 1"  # smooth shading, as no normals are written
     if mesh.uv is None or mesh.uv_faces is None:
