@@ -12,7 +12,7 @@ from toongeo.driving.landmark_frames import landmark_frames
 from toongeo.driving.landmark_pose import FEWEST, LandmarkPose, landmark_pose
 from toongeo.driving.landmark_rig import LandmarkRig
 from toongeo.driving.one_euro_filter import OneEuroFilter
-from toongeo.driving.weight_names import NAMES
+from toongeo.model.expression_schemes import EXPRESSIONS
 from toongeo.geometry.one_thread import one_thread
 from toongeo.pipeline import Rig
 
@@ -57,7 +57,7 @@ class LandmarkDriver:
     'jawOpen'
     """
 
-    names = NAMES
+    names = EXPRESSIONS
 
     def __init__(self, performer: Avatar | LandmarkRig | ArrayLike | None = None) -> None:
         self._rig: LandmarkRig | None
@@ -199,7 +199,7 @@ def _smoothed(moved: Floats, noise: float, fps: float) -> Floats:
 
 
 def _all_weights(weights: Floats, names: tuple[str, ...]) -> Floats:
-    """Weights (f, k) of a rig's expressions as (f, 54) of NAMES."""
-    rows = np.zeros((len(weights), len(NAMES)))
-    rows[:, [NAMES.index(name) for name in names]] = weights
+    """Weights (f, k) of a rig's expressions as (f, 54) of EXPRESSIONS."""
+    rows = np.zeros((len(weights), len(EXPRESSIONS)))
+    rows[:, [EXPRESSIONS.index(name) for name in names]] = weights
     return rows
