@@ -9,7 +9,7 @@ from toongeo.io import read_glb, read_obj
 
 
 def scene(avatar, crop):
-    return avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture, crop=crop)
+    return avatar_scene(avatar, crop=crop, split=False)
 
 
 @pytest.mark.parametrize("crop", ["head", "bust"])

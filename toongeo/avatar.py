@@ -1,17 +1,15 @@
 """A textured, rigged face."""
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from toongeo._read_only import read_only
 from toongeo.avatar_report import AvatarReport
-from toongeo.avatar_scene import avatar_scene
-from toongeo.crop_faces import Crop
-from toongeo.io import SceneMesh, write_glb, write_obj, write_ply
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.protocols import Camera, FaceParse
@@ -20,10 +18,9 @@ from toongeo.render import (
     Surface,
     irradiance,
     render_mesh,
-    sample_image,
     studio_light,
-    uv_to_px,
 )
+from toongeo.save_avatar import save_avatar
 
 HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
 Weights = Mapping[str, float] | np.ndarray | None
@@ -146,27 +143,44 @@ class Avatar:
         # The texture holds the light of the picture already: a soft light shows the shape without shading it twice.
         return render_mesh(surfaces, camera, size, light=_soft_light())
 
-    def save(self, path: str | os.PathLike[str], *, crop: Crop = "head") -> None:
-        """Write a file by its suffix: ``.glb``, ``.obj`` (with ``.mtl`` and ``.png`` beside it) or ``.ply``.
+    def save(self, path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> None:
+        """Write a file by its suffix, or files by a format.
+
+        ======================  ==========================================================================
+        ``.glb``                crop, quantize, normals, texture, animation, names, loadable
+        ``.obj``                crop; writes ``.mtl`` and ``.png`` beside it
+        ``.ply``                crop
+        ======================  ==========================================================================
 
         Parameters
         ----------
         path
+            File to write.
+        format : optional
+            One of the names above in place of the suffix.
         crop : {"head", "bust", "face"}
             "head" and "bust" are all that the template has; "face" is the front of the face with eyes and teeth.
+        quantize : bool
+            Integers in place of floats: half the size, off by 0.02 mm or less.
+        normals : bool
+            Whether expressions bend the normals too; viewers that compute them need it not.
+        texture : {"png", "jpeg", None}
+            None: each part in its mean colour.
+        animation : "demo", None, or a pair of times (f,) in s and weights (f, 46) or (f, 54)
+        names : {"toongeo", "arkit"}
+            Of the targets: the rig's 46 and 8 directions of gaze, or exactly the 52 of ARKit.
+        loadable : bool
+            Whether :func:`toongeo.load_avatar` can read the file back. It then holds how the picture was parsed (some
+            hundred kB), and the fit. A cropped file, or one of other names, never is.
 
         Raises
         ------
         ValueError
-            If the suffix is none of these, or the crop is unknown.
+            If the suffix or the format is unknown, or has no such option, or the option no such value.
         OSError
-            If the file cannot be written; nothing half-written is left.
+            If a file cannot be written; nothing half-written is left.
         """
-        path = Path(path)
-        writer = WRITERS.get(path.suffix.lower())
-        if writer is None:
-            raise ValueError(f"path: expected a name that ends in {', '.join(WRITERS)}, got {path}")
-        writer(path, self, crop)
+        save_avatar(Path(path), self, format, options)
 
     def _camera(self, size: int, yaw: float, pitch: float) -> ScaledOrthographicCamera:
         skin = self.rig.neutral[self.face.region("skin")]
@@ -182,39 +196,3 @@ def _soft_light() -> np.ndarray:
     front = irradiance(np.array([[0.0, 0.0, 1.0]]), light)[0]
     light[1:] *= 0.5
     return light * (front / irradiance(np.array([[0.0, 0.0, 1.0]]), light)[0])
-
-
-def _write_glb(path: Path, avatar: Avatar, crop: Crop) -> None:
-    write_glb(path, avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture, crop=crop))
-
-
-def _write_obj(path: Path, avatar: Avatar, crop: Crop) -> None:
-    write_obj(path, avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture, crop=crop))
-
-
-def _write_ply(path: Path, avatar: Avatar, crop: Crop) -> None:
-    """Neutral head and eyeballs in one mesh, with the texture's colours at the vertices."""
-    meshes = avatar_scene(avatar.rig, avatar.eyes, avatar.face.model, avatar.texture, crop=crop).meshes
-    offsets = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
-    write_ply(
-        path,
-        np.vstack([mesh.vertices for mesh in meshes]),
-        np.vstack([mesh.faces + offset for mesh, offset in zip(meshes, offsets, strict=True)]),
-        np.vstack([_vertex_colours(mesh) for mesh in meshes]),
-    )
-
-
-def _vertex_colours(mesh: SceneMesh) -> np.ndarray:
-    """Colours (n, 3) uint8 that the texture has at the vertices."""
-    assert mesh.texture is not None and mesh.uv is not None and mesh.uv_faces is not None
-    corner = np.zeros(len(mesh.vertices), int)
-    corner[mesh.faces.ravel()] = mesh.uv_faces.ravel()  # at a seam, any of the corners
-    colours = sample_image(mesh.texture, uv_to_px(mesh.uv[corner], *mesh.texture.shape[:2]))
-    return np.rint(colours).astype(np.uint8)
-
-
-WRITERS: dict[str, Callable[[Path, Avatar, Crop], None]] = {
-    ".glb": _write_glb,
-    ".obj": _write_obj,
-    ".ply": _write_ply,
-}

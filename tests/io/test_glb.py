@@ -235,8 +235,8 @@ def test_damaged_files(tmp_path, scene):
 @pytest.mark.parametrize(
     ("edit", "message"),
     [
-        (lambda j: j["nodes"][0].update(scale=[1, 1, 1]), "expected nodes of a mesh and a translation"),
-        (lambda j: j["nodes"][0].pop("mesh"), "expected nodes of a mesh and a translation"),
+        (lambda j: j["nodes"][0].update(scale=[1, 2, 1]), "expected nodes of a mesh, a translation and one scale"),
+        (lambda j: j["nodes"][0].pop("mesh"), "expected nodes of a mesh, a translation and one scale"),
         (lambda j: j["meshes"][0]["primitives"].append({}), "expected one primitive a mesh, got 2"),
     ],
 )

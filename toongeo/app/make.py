@@ -4,10 +4,11 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from toongeo.avatar import WRITERS, Avatar
+from toongeo.avatar import Avatar
 from toongeo.crop_faces import Crop
 from toongeo.io import read_image, read_landmarks
 from toongeo.make_avatar import STAGES, make_avatar
+from toongeo.save_avatar import SUFFIXES
 
 
 def make(
@@ -29,8 +30,8 @@ def make(
     ValueError, OSError
         For bad input or an output that cannot be written; the output is checked before the work.
     """
-    if output.suffix.lower() not in WRITERS:
-        raise ValueError(f"output: expected a name that ends in {', '.join(WRITERS)}, got {output}")
+    if output.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"output: expected a name that ends in {', '.join(SUFFIXES)}, got {output}")
     if not output.parent.is_dir():
         raise OSError(f"output: no folder {output.parent} to write {output.name} to")
     img, points = read_image(image), read_landmarks(landmarks)

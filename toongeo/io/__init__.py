@@ -1,4 +1,4 @@
-"""Files: pictures, landmarks, and meshes as GLB, OBJ and PLY.
+"""Files: pictures, landmarks, and meshes as GLB, VRM, OBJ, PLY and USDZ.
 
 Axes and units are converted here and nowhere else. Every writer is atomic: on any error nothing
 half-written remains.
@@ -17,11 +17,15 @@ from toongeo.io.read_landmarks import read_landmarks
 from toongeo.io.read_obj import ObjData, read_obj
 from toongeo.io.scene import Scene, SceneAnimation, SceneMesh
 from toongeo.io.split_seams import split_seams
+from toongeo.io.vrm_meta import VrmMeta
 from toongeo.io.write_glb import write_glb
 from toongeo.io.write_image import write_image
 from toongeo.io.write_landmarks import write_landmarks
 from toongeo.io.write_obj import write_obj
+from toongeo.io.write_obj_sequence import write_obj_sequence
 from toongeo.io.write_ply import write_ply
+from toongeo.io.write_usdz import write_usdz
+from toongeo.io.write_vrm import write_vrm
 
 __all__ = [
     "GlbDocument",
@@ -29,6 +33,7 @@ __all__ = [
     "Scene",
     "SceneAnimation",
     "SceneMesh",
+    "VrmMeta",
     "atomic_write",
     "check_image",
     "check_landmarks",
@@ -45,5 +50,8 @@ __all__ = [
     "write_image",
     "write_landmarks",
     "write_obj",
+    "write_obj_sequence",
     "write_ply",
+    "write_usdz",
+    "write_vrm",
 ]

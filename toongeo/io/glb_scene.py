@@ -1,13 +1,14 @@
 """The scene that a GLB of ours holds."""
 
 import io
+import warnings
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from toongeo.io.encode_glb import METRES
+from toongeo.io._glb_scene import METRES
 from toongeo.io.read_glb import GlbDocument
 from toongeo.io.scene import Scene, SceneAnimation, SceneMesh
 
@@ -17,7 +18,7 @@ __all__ = ["glb_scene"]
 def glb_scene(document: GlbDocument) -> Scene:
     """Inverse of :func:`encode_glb`, up to float32 and up to the vertices repeated along uv seams.
 
-    Encoding the result again (with the tolerance 0) gives the same bytes.
+    Encoding the result again (with the tolerance 0) gives the same bytes, if nothing was quantized.
 
     Parameters
     ----------
@@ -32,27 +33,35 @@ def glb_scene(document: GlbDocument) -> Scene:
     Raises
     ------
     ValueError
-        If a node holds no mesh or is scaled, turned or nested, or a mesh has several primitives.
+        If a node holds no mesh or is turned, nested or scaled by axis, a mesh has several primitives, or anything else
+        is not as :func:`encode_glb` writes it.
     """
     textures: dict[int, NDArray[np.uint8]] = {}
-    return Scene(
-        tuple(_mesh(document, node, textures) for node in document.json.get("nodes", [])),
-        _animation(document),
-    )
+    try:
+        return Scene(
+            tuple(_mesh(document, node, textures) for node in document.json.get("nodes", [])),
+            _animation(document),
+        )
+    except (LookupError, TypeError, AttributeError, ArithmeticError, OSError) as error:  # OSError: of the picture
+        reason = f"{type(error).__name__}: {error}"[:200]
+        raise ValueError(f"document: expected a GLB as toongeo writes it, got another ({reason})") from error
 
 
 def _mesh(document: GlbDocument, node: dict[str, Any], textures: dict[int, NDArray[np.uint8]]) -> SceneMesh:
-    unknown = set(node) - {"name", "mesh", "translation"}
-    if "mesh" not in node or unknown:
-        raise ValueError(f"document: expected nodes of a mesh and a translation, got {node}")
+    unknown = set(node) - {"name", "mesh", "translation", "scale"}
+    scale = set(node.get("scale", [1.0]))
+    if "mesh" not in node or unknown or len(scale) != 1:
+        raise ValueError(f"document: expected nodes of a mesh, a translation and one scale, got {str(node)[:200]}")
     mesh = document.json["meshes"][node["mesh"]]
     if len(mesh["primitives"]) != 1:
         raise ValueError(f"document: expected one primitive a mesh, got {len(mesh['primitives'])}")
     primitive = mesh["primitives"][0]
-    attributes = {name: document.accessors[index] for name, index in primitive["attributes"].items()}
+    attributes = {name: _numbers(document, index) for name, index in primitive["attributes"].items()}
+    normals = attributes["NORMAL"]
     pivot = np.array(node["translation"]) / METRES if "translation" in node else None
-    vertices = attributes["POSITION"].astype(np.float64) / METRES
-    targets = [document.accessors[target["POSITION"]] for target in primitive.get("targets", [])]
+    millimetres = scale.pop() / METRES
+    vertices = attributes["POSITION"].astype(np.float64) * millimetres
+    targets = [_numbers(document, target["POSITION"]) for target in primitive.get("targets", [])]
     material = document.json["materials"][primitive["material"]]["pbrMetallicRoughness"]
     linear = np.array(material["baseColorFactor"][:3])
     uv = attributes.get("TEXCOORD_0")
@@ -61,14 +70,23 @@ def _mesh(document: GlbDocument, node: dict[str, Any], textures: dict[int, NDArr
         vertices=vertices if pivot is None else vertices + pivot,
         faces=document.accessors[primitive["indices"]].reshape(-1, 3),
         uv=None if uv is None else uv.astype(np.float64) * [1, -1] + [0, 1],
-        normals=attributes["NORMAL"],
+        # Integers do not quite give unit length.
+        normals=normals if normals.dtype == np.float32 else normals / np.linalg.norm(normals, axis=1, keepdims=True),
         texture=_texture(document, material, textures),
         color=tuple(np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)),
         roughness=material["roughnessFactor"],
-        targets=np.stack(targets).astype(np.float64) / METRES if targets else None,
+        targets=np.stack(targets).astype(np.float64) * millimetres if targets else None,
         target_names=tuple(mesh.get("extras", {}).get("targetNames", ())),
         pivot=pivot,
     )
+
+
+def _numbers(document: GlbDocument, index: int) -> NDArray:
+    """An accessor; integers that stand for fractions of 1 as these fractions (3.6.2.2)."""
+    array = document.accessors[index]
+    if not document.json["accessors"][index].get("normalized", False):
+        return array
+    return np.maximum(array / float(np.iinfo(array.dtype).max), -1.0)
 
 
 def _texture(
@@ -78,7 +96,13 @@ def _texture(
         return None
     source = document.json["textures"][material["baseColorTexture"]["index"]]["source"]
     if source not in textures:
-        textures[source] = np.array(Image.open(io.BytesIO(document.images[source])).convert("RGB"))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", Image.DecompressionBombWarning)
+            try:
+                picture = Image.open(io.BytesIO(document.images[source]))
+                textures[source] = np.array(picture.convert("RGB"))
+            except (Image.DecompressionBombWarning, Image.DecompressionBombError, SyntaxError) as error:
+                raise ValueError(f"document: picture {source} cannot be read ({error})") from error
     return textures[source]
 
 

@@ -1,7 +1,9 @@
 """A binary glTF 2.0 file as its JSON and arrays."""
 
+import hashlib
 import json
 import os
+import re
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,9 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.io._glb_builder import COLUMNS, COMPONENTS
+from toongeo.io._glb_builder import COLUMNS, COMPONENTS, NO_CHECKSUM, checksum_entry
 
 __all__ = ["GlbDocument", "read_glb"]
+
+_MOST_BYTES = 1 << 29  # of all accessors together, which a few bytes of a damaged file could announce to be huge
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +31,17 @@ class GlbDocument:
         An array each: (n,) scalars or (n, columns); sparse ones filled in; ``normalized`` ones as stored.
     images
         The bytes of each embedded picture (empty if it is not embedded).
+    attachment
+        What :func:`encode_glb` was given as such; None if there is none.
+    intact
+        Whether a file with an attachment is what :func:`encode_glb` made, to the last byte.
     """
 
     json: dict[str, Any]
     accessors: tuple[NDArray, ...]
     images: tuple[bytes, ...]
+    attachment: bytes | None = None
+    intact: bool = False
 
 
 def read_glb(path: str | os.PathLike[str]) -> GlbDocument:
@@ -52,18 +62,21 @@ def read_glb(path: str | os.PathLike[str]) -> GlbDocument:
     OSError
         If the file is missing or cannot be read.
     ValueError
-        If it is no GLB of version 2, truncated, or its accessors do not fit its buffer.
+        If it is no GLB of version 2, truncated, its accessors do not fit its buffer, or they are together beyond
+        512 MB.
     """
     content = Path(path).read_bytes()
     try:
         document, binary = _chunks(content)
         views = [_view(binary, entry) for entry in document.get("bufferViews", [])]
+        _check_size(document.get("accessors", []))
         accessors = tuple(_accessor(views, document, entry) for entry in document.get("accessors", []))
         images = tuple(_image(views, entry) for entry in document.get("images", []))
-    except (struct.error, KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
-        reason = f"{type(error).__name__}: {error}"
+        attachment, intact = _attachment(content, document, views)
+    except (struct.error, LookupError, TypeError, AttributeError, ValueError, ArithmeticError, RecursionError) as error:
+        reason = f"{type(error).__name__}: {error}"[:200]
         raise ValueError(f"path: expected a GLB (glTF 2.0), but {path} is damaged or none ({reason})") from error
-    return GlbDocument(document, accessors, images)
+    return GlbDocument(document, accessors, images, attachment, intact)
 
 
 def _chunks(content: bytes) -> tuple[dict[str, Any], bytes]:
@@ -89,6 +102,28 @@ def _view(binary: bytes, entry: dict[str, Any]) -> memoryview:
     if entry["buffer"] != 0 or start < 0 or stop > len(binary):
         raise ValueError(f"a buffer view ends at byte {stop} of {len(binary)}")
     return memoryview(binary)[start:stop]
+
+
+def _check_size(entries: list[dict[str, Any]]) -> None:
+    size = sum(
+        entry["count"] * COLUMNS[entry["type"]] * np.dtype(COMPONENTS[entry["componentType"]]).itemsize
+        for entry in entries
+    )
+    if not 0 <= size <= _MOST_BYTES or any(entry["count"] < 1 for entry in entries):
+        raise ValueError(f"the accessors announce {size} bytes")
+
+
+def _attachment(content: bytes, document: dict[str, Any], views: list[memoryview]) -> tuple[bytes | None, bool]:
+    """The attachment, and whether the file has the checksum that stands in it."""
+    extras = document.get("extras")
+    entry = extras.get("toongeo") if isinstance(extras, dict) else None
+    if entry is None:
+        return None, False
+    checksum = entry["sha256"]
+    if not re.fullmatch("[0-9a-f]{64}", checksum):
+        return bytes(views[entry["bufferView"]]), False
+    original = content.replace(checksum_entry(checksum), checksum_entry(NO_CHECKSUM), 1)
+    return bytes(views[entry["bufferView"]]), hashlib.sha256(original).hexdigest() == checksum
 
 
 def _image(views: list[memoryview], entry: dict[str, Any]) -> bytes:

@@ -77,6 +77,14 @@ class SceneMesh:
         if self.pivot is not None:
             self._put("pivot", _finite(self._label("pivot"), self.pivot, (3,)))
 
+    def moved(self, weights: Mapping[str, float]) -> NDArray[np.floating]:
+        """Vertices (n, 3), mm, with targets added; names the mesh does not have are ignored."""
+        vertices = self.vertices
+        if self.targets is not None:
+            for name in (name for name in self.target_names if name in weights):
+                vertices = vertices + weights[name] * self.targets[self.target_names.index(name)]
+        return vertices
+
     def _check_uv(self, m: int) -> None:
         if self.uv is None:
             if self.uv_faces is not None or self.texture is not None:

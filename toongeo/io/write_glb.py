@@ -1,6 +1,7 @@
 """A scene into a binary glTF 2.0 file."""
 
 import os
+from typing import Any
 
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.encode_glb import encode_glb
@@ -9,16 +10,14 @@ from toongeo.io.scene import Scene
 __all__ = ["write_glb"]
 
 
-def write_glb(
-    path: str | os.PathLike[str], scene: Scene, *, normal_deltas: bool = False, tolerance_mm: float = 1e-3
-) -> None:
+def write_glb(path: str | os.PathLike[str], scene: Scene, **options: Any) -> None:
     """Write a ``.glb``; atomically, and the same bytes for the same scene.
 
     Parameters
     ----------
     path
         File to write.
-    scene, normal_deltas, tolerance_mm
+    scene, **options
         As of :func:`encode_glb`.
 
     Raises
@@ -26,7 +25,7 @@ def write_glb(
     OSError
         If the path cannot be written; nothing half-written remains.
     ValueError
-        If ``tolerance_mm`` is negative.
+        As of :func:`encode_glb`.
 
     Examples
     --------
@@ -40,4 +39,4 @@ def write_glb(
     >>> read_glb(path).json["meshes"][0]["extras"]
     {'targetNames': ['up']}
     """
-    atomic_write({path: encode_glb(scene, normal_deltas=normal_deltas, tolerance_mm=tolerance_mm)})
+    atomic_write({path: encode_glb(scene, **options)})

@@ -1,7 +1,7 @@
 """A scene as Wavefront OBJ, for programs that keep no morph targets."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -37,25 +37,35 @@ def write_obj(path: str | os.PathLike[str], scene: Scene) -> None:
     path = Path(path)
     if path.suffix.lower() != ".obj":
         raise ValueError(f"path: expected a name that ends in .obj, got {path}")
+    atomic_write(obj_files(path, scene))
+
+
+def obj_files(path: Path, scene: Scene) -> dict[str | os.PathLike[str], bytes]:
+    """The files by path; the ``.obj`` last: whoever sees it sees the files it names."""
     pictures: dict[bytes, str] = {}
     files: dict[str | os.PathLike[str], bytes] = {}
     materials: list[str] = []
-    lines = ["# mm; +X the subject's left, +Y up, +Z out of the face", f"mtllib {path.stem}.mtl"]
-    vertex = uv = 1
     for number, mesh in enumerate(scene.meshes):
-        material = f"material_{number}"
-        materials += _material(material, mesh, path.stem, pictures, files, path.parent)
-        lines += [f"o {_token(mesh.name)}", f"usemtl {material}", *_geometry(mesh, vertex, uv)]
-        vertex += len(mesh.vertices)
-        uv += 0 if mesh.uv is None else len(mesh.uv)
+        materials += _material(f"material_{number}", mesh, path.stem, pictures, files, path.parent)
     files[path.with_suffix(".mtl")] = ("\n".join(materials) + "\n").encode()
-    files[path] = ("\n".join(lines) + "\n").encode()
-    atomic_write(files)  # the .obj last: whoever sees it sees the files it names
+    files[path] = obj_text(scene, f"{path.stem}.mtl", [mesh.vertices for mesh in scene.meshes])
+    return files
 
 
-def _geometry(mesh: SceneMesh, vertex: int, uv: int) -> Iterator[str]:
+def obj_text(scene: Scene, library: str, vertices: Sequence[NDArray[np.floating]]) -> bytes:
+    """An ``.obj`` of the scene with these vertices for its meshes, and the materials of a library."""
+    lines = ["# mm; +X the subject's left, +Y up, +Z out of the face", f"mtllib {library}"]
+    first = uv = 1
+    for number, (mesh, points) in enumerate(zip(scene.meshes, vertices, strict=True)):
+        lines += [f"o {_token(mesh.name)}", f"usemtl material_{number}", *_geometry(mesh, points, first, uv)]
+        first += len(points)
+        uv += 0 if mesh.uv is None else len(mesh.uv)
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _geometry(mesh: SceneMesh, vertices: NDArray[np.floating], vertex: int, uv: int) -> Iterator[str]:
     """Lines of one object whose first vertex and uv have these (1-based) numbers in the file."""
-    yield from _rows("v", mesh.vertices)
+    yield from _rows("v", vertices)
     corners = (mesh.faces + vertex).tolist()
     yield "s 1"  # smooth shading, as no normals are written
     if mesh.uv is None or mesh.uv_faces is None:

@@ -1,4 +1,4 @@
-"""A mesh with colours at its vertices."""
+"""A mesh with colours and texture coordinates at its vertices."""
 
 import os
 
@@ -10,7 +10,13 @@ from toongeo.io.atomic_write import atomic_write
 __all__ = ["write_ply"]
 
 
-def write_ply(path: str | os.PathLike[str], V: ArrayLike, F: ArrayLike, colors: ArrayLike | None = None) -> None:
+def write_ply(
+    path: str | os.PathLike[str],
+    V: ArrayLike,
+    F: ArrayLike,
+    colors: ArrayLike | None = None,
+    uv: ArrayLike | None = None,
+) -> None:
     """Write a binary little-endian ``.ply``; atomically.
 
     Parameters
@@ -23,6 +29,9 @@ def write_ply(path: str | os.PathLike[str], V: ArrayLike, F: ArrayLike, colors: 
         (m, 3) into ``V``.
     colors
         (n, 3) uint8 sRGB, stored as ``red``, ``green``, ``blue``.
+    uv
+        (n, 2), origin bottom-left, stored as ``s`` and ``t``; a format with one uv a vertex, so split the seams
+        (:func:`split_seams`) first.
 
     Raises
     ------
@@ -55,10 +64,18 @@ def write_ply(path: str | os.PathLike[str], V: ArrayLike, F: ArrayLike, colors: 
             raise ValueError(f"colors: expected uint8 {V.shape}, got {colors.dtype} {colors.shape}")
         fields.append(("color", "u1", 3))
         header += [f"property uchar {channel}" for channel in ("red", "green", "blue")]
+    if uv is not None:
+        uv = np.asarray(uv)
+        if uv.shape != (len(V), 2) or uv.dtype.kind != "f" or not np.isfinite(uv).all():
+            raise ValueError(f"uv: expected finite ({len(V)}, 2), got {uv.dtype} {uv.shape}")
+        fields.append(("uv", "<f4", 2))
+        header += [f"property float {axis}" for axis in "st"]
     vertices = np.zeros(len(V), fields)
     vertices["position"] = V
     if colors is not None:
         vertices["color"] = colors
+    if uv is not None:
+        vertices["uv"] = uv
     faces = np.zeros(len(F), [("count", "u1"), ("corners", "<i4", 3)])
     faces["count"], faces["corners"] = 3, F
     header += [f"element face {len(F)}", "property list uchar int vertex_indices", "end_header", ""]

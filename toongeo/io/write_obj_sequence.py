@@ -1,0 +1,58 @@
+"""A scene as a folder of OBJ files, one a target."""
+
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+
+from toongeo.io.atomic_write import atomic_write
+from toongeo.io.scene import Scene
+from toongeo.io.write_obj import obj_files, obj_text
+
+__all__ = ["write_obj_sequence"]
+
+_DECIMALS = 5  # of a mm, as float32 has at the crown of a head
+
+
+def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: str = "face") -> None:
+    """Write ``000_neutral.obj`` and ``001_jawOpen.obj`` ... for every target, with one ``.mtl`` and its textures.
+
+    All files have the same vertices and faces in the same order, so programs can blend between them. Of a target that
+    several meshes have, all move. Coordinates are rounded to 1e-5 mm. Characters of names that are not letters, digits, ``-`` or ``_`` become ``_``.
+
+    Parameters
+    ----------
+    folder
+        Is made if it is not there; files of the same names in it are replaced.
+    scene
+        Model frame, mm.
+    stem
+        Of the ``.mtl`` and the textures.
+
+    Raises
+    ------
+    ValueError
+        If the stem is not of letters, digits, ``-`` and ``_``.
+    OSError
+        If the folder cannot be made or a file cannot be written; then none is.
+    """
+    if not re.fullmatch(r"[\w-]+", stem, re.ASCII):
+        raise ValueError(f"stem: expected letters, digits, - and _, got {stem!r}")
+    folder = Path(folder)
+    files = obj_files(folder / f"{stem}.obj", scene)
+    files.pop(folder / f"{stem}.obj")
+    names = list(dict.fromkeys(name for mesh in scene.meshes for name in mesh.target_names))
+    for number, name in enumerate(["neutral", *names]):
+        weights = {} if number == 0 else {name: 1.0}
+        moved = [np.round(mesh.moved(weights), _DECIMALS) for mesh in scene.meshes]
+        safe = re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:80]
+        files[folder / f"{number:03}_{safe}.obj"] = obj_text(scene, f"{stem}.mtl", moved)
+    new = not folder.exists()
+    try:
+        folder.mkdir(exist_ok=True)
+        atomic_write(files)
+    except OSError as error:
+        if new and folder.is_dir():
+            folder.rmdir()
+        raise OSError(error.errno, f"cannot write to {folder}: {error.strerror}") from error

@@ -1,0 +1,227 @@
+"""The files an avatar can be saved as."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, get_args
+
+import numpy as np
+
+from toongeo.avatar_scene import Shapes, avatar_scene, demo_clip, vertex_colours, weight_clip
+from toongeo.avatar_state import encode_state
+from toongeo.crop_faces import Crop
+from toongeo.io import (
+    Scene,
+    SceneAnimation,
+    VrmMeta,
+    split_seams,
+    write_glb,
+    write_obj,
+    write_obj_sequence,
+    write_ply,
+    write_usdz,
+    write_vrm,
+)
+from toongeo.model.expression_schemes import PRESETS, SCHEMES
+from toongeo.pipeline import Rig
+from toongeo.pipeline.rig.gaze import SIDEWAYS, UPDOWN
+
+if TYPE_CHECKING:
+    from toongeo.avatar import Avatar
+
+Names = Literal["toongeo", "arkit", "talkinghead"]
+Texture = Literal["png", "jpeg"] | None
+Animation = Literal["demo"] | None | tuple[Any, Any]
+EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
+COARSE_MM = 0.02  # the same for a quantized file: a tenth of a pixel where a head is a thousand high
+COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
+
+# What players that speak by Oculus visemes look for, as in avatars of Ready Player Me: meshes below a node, 15 visemes
+# of which three have letters for names, and five mixtures.
+PLAYER_ROOT = "Armature"
+PLAYER_MESHES = {
+    "head": "Wolf3D_Head",
+    "teeth": "Wolf3D_Teeth",
+    "tongue": "Wolf3D_Tongue",
+    "eye_left": "EyeLeft",
+    "eye_right": "EyeRight",
+}
+_LETTERS = {"ih": "I", "oh": "O", "ou": "U"}
+PLAYER_VISEMES = [(f"viseme_{_LETTERS.get(name, name)}", f"viseme_{name}") for name in SCHEMES["oculus"]]
+PLAYER_EXTRAS: Shapes = [
+    ("mouthOpen", {"jawOpen": 1.0}),
+    ("mouthSmile", {"mouthSmileLeft": 1.0, "mouthSmileRight": 1.0}),
+    ("eyesClosed", {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}),
+    ("eyesLookUp", {"eyeLookUpLeft": 1.0, "eyeLookUpRight": 1.0}),
+    ("eyesLookDown", {"eyeLookDownLeft": 1.0, "eyeLookDownRight": 1.0}),
+]
+
+
+def save_avatar(path: Path, avatar: Avatar, kind: str | None, options: dict[str, Any]) -> None:
+    """What :meth:`toongeo.Avatar.save` does."""
+    suffix = path.suffix.lower() if kind is None else kind
+    writer = WRITERS.get(suffix)
+    if writer is None and kind is None:
+        raise ValueError(f"path: expected a name that ends in {', '.join(SUFFIXES)}, got {path}")
+    if writer is None:
+        raise ValueError(f"format: expected one of {', '.join(WRITERS)}, got {kind!r}")
+    known = list(inspect.signature(writer).parameters)[2:]
+    for name in options:
+        if name not in known:
+            raise ValueError(f"{name}: no option of {suffix}, which has {', '.join(known)}")
+    writer(path, avatar, **options)
+
+
+def _write_glb(
+    path: Path,
+    avatar: Avatar,
+    *,
+    crop: Crop = "head",
+    quantize: bool = False,
+    normals: bool = False,
+    texture: Texture = "png",
+    animation: Animation = "demo",
+    names: Names = "toongeo",
+    sparse: bool = True,
+    loadable: bool = True,
+) -> None:
+    scene = avatar_scene(
+        avatar,
+        crop=crop,
+        shapes=named_shapes(avatar.rig, names),
+        animation=_animation(avatar.rig, animation),
+        textured=_check_texture(texture) is not None,
+    )
+    player = names == "talkinghead"
+    if player:
+        scene = renamed_scene(scene, PLAYER_MESHES)
+    whole = crop != "face" and names == "toongeo"  # else the file has not all that is needed
+    write_glb(
+        path,
+        scene,
+        normal_deltas=normals,
+        tolerance_mm=COARSE_MM if quantize else EXACT_MM,
+        quantize=quantize,
+        picture=texture or "png",
+        sparse=sparse,
+        root=PLAYER_ROOT if player else None,
+        attachment=avatar_attachment(avatar, coarse=quantize) if loadable and whole else None,
+    )
+
+
+def _write_vrm(
+    path: Path,
+    avatar: Avatar,
+    *,
+    crop: Crop = "head",
+    normals: bool = False,
+    texture: Texture = "png",
+    meta: VrmMeta | None = None,
+) -> None:
+    scene = avatar_scene(avatar, crop=crop, textured=_check_texture(texture) is not None)
+    # Bones turn the eyes, which therefore need no targets; the lids that follow are the head's.
+    still = (replace(m, targets=None, target_names=()) if m.name.startswith("eye_") else m for m in scene.meshes)
+    write_vrm(
+        path,
+        Scene(tuple(still)),
+        {**SCHEMES["vrm"], **SCHEMES["arkit"]},
+        meta=meta,
+        gaze_degrees=(SIDEWAYS, UPDOWN),
+        normal_deltas=normals,
+        tolerance_mm=EXACT_MM,
+        picture=texture or "png",
+    )
+
+
+def avatar_attachment(avatar: Avatar, *, coarse: bool) -> bytes:
+    """All of an avatar that its meshes and its texture do not tell."""
+    parse = avatar.parse
+    if coarse:
+        steps = np.float32(COARSE_STEPS)
+        parse = replace(parse, confidence=np.rint(parse.confidence * steps) / steps)
+    # The camera's picture is known to the reader as the file's image, the rig's arrays as its meshes.
+    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name != "texture"}
+    return encode_state({**state, "parse": parse}, rig_arrays(avatar.rig), avatar.face.model)
+
+
+def rig_arrays(rig: Rig) -> dict[str, np.ndarray]:
+    """The arrays of a rig that the meshes of a GLB hold."""
+    return {"neutral": rig.neutral, "deltas": rig.deltas, "gaze": rig.gaze}
+
+
+def named_shapes(rig: Rig, names: Names) -> Shapes | None:
+    """Targets under the names that are asked for; None for the rig's own."""
+    if names == "toongeo":
+        return None
+    if names == "arkit":
+        return list(SCHEMES["arkit"].items())
+    if names == "talkinghead":
+        return [*SCHEMES["arkit"].items(), *((name, PRESETS[viseme]) for name, viseme in PLAYER_VISEMES), *PLAYER_EXTRAS]
+    raise ValueError(f"names: expected one of {', '.join(get_args(Names))}, got {names!r}")
+
+
+def renamed_scene(scene: Scene, names: Mapping[str, str]) -> Scene:
+    """The same meshes under other names."""
+    meshes = tuple(replace(mesh, name=names[mesh.name]) for mesh in scene.meshes)
+    clip = scene.animation
+    if clip is not None:
+        clip = replace(clip, weights={names[mesh]: weights for mesh, weights in clip.weights.items()})
+    return Scene(meshes, clip)
+
+
+def _animation(rig: Rig, animation: Animation) -> SceneAnimation | None:
+    if animation is None:
+        return None
+    if isinstance(animation, tuple) and len(animation) == 2:
+        return weight_clip(rig, *animation)
+    if isinstance(animation, str) and animation == "demo":
+        return demo_clip(rig)
+    raise ValueError(f"animation: expected 'demo', None or a pair of times and weights, got {animation!r}")
+
+
+def _check_texture(texture: Texture) -> Texture:
+    if texture not in ("png", "jpeg", None):
+        raise ValueError(f"texture: expected 'png', 'jpeg' or None, got {texture!r}")
+    return texture
+
+
+def _write_obj(path: Path, avatar: Avatar, *, crop: Crop = "head") -> None:
+    write_obj(path, avatar_scene(avatar, crop=crop, split=False))
+
+
+def _write_obj_sequence(path: Path, avatar: Avatar, *, crop: Crop = "head", names: Names = "toongeo") -> None:
+    shapes = named_shapes(avatar.rig, names)
+    write_obj_sequence(path, avatar_scene(avatar, crop=crop, shapes=shapes, split=False))
+
+
+def _write_ply(path: Path, avatar: Avatar, *, crop: Crop = "head") -> None:
+    """Neutral head and eyeballs in one mesh, with the texture's coordinates and its colours at the vertices."""
+    vertices, faces, colours, uvs, count = [], [], [], [], 0
+    for mesh in avatar_scene(avatar, crop=crop, split=False).meshes:
+        assert mesh.uv is not None and mesh.uv_faces is not None
+        vertex, uv, split = split_seams(mesh.faces, mesh.uv_faces)
+        vertices.append(mesh.vertices[vertex])
+        faces.append(split + count)
+        colours.append(vertex_colours(mesh)[vertex])
+        uvs.append(mesh.uv[uv])
+        count += len(vertex)
+    write_ply(path, np.vstack(vertices), np.vstack(faces), np.vstack(colours), np.vstack(uvs))
+
+
+def _write_usdz(path: Path, avatar: Avatar, *, crop: Crop = "head", names: Names = "toongeo") -> None:
+    shapes = named_shapes(avatar.rig, names)
+    write_usdz(path, avatar_scene(avatar, crop=crop, shapes=shapes), tolerance_mm=EXACT_MM)
+
+
+WRITERS: dict[str, Callable[..., None]] = {
+    ".glb": _write_glb,
+    ".obj": _write_obj,
+    ".ply": _write_ply,
+    ".vrm": _write_vrm,
+    ".usdz": _write_usdz,
+    "obj-sequence": _write_obj_sequence,
+}
+SUFFIXES = tuple(name for name in WRITERS if name.startswith("."))
