@@ -24,7 +24,8 @@ class AvatarServer:
 
     Whoever connects must know ``token``, which is new for each server. A source sends ``{"jawOpen": 0.5}`` or an array
     of weights in the order of ``names``; every page applies it and acknowledges, and sources are told so by
-    ``{"applied": 1}`` for each message that the first page has applied. What is not understood is answered with ``{"error": "..."}`` and not passed on.
+    ``{"applied": 1}`` for each message that the first page has applied. What is not understood is answered with
+    ``{"error": "..."}`` and not passed on.
 
     Parameters
     ----------

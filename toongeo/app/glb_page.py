@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from toongeo.io import GlbDocument, page_html, read_glb
-from toongeo.model.expression_schemes import PRESETS
+from toongeo.save_avatar import page_presets
 
 __all__ = ["glb_page", "read_avatar_glb", "target_names"]
 
@@ -32,5 +32,4 @@ def target_names(document: GlbDocument) -> tuple[str, ...]:
 
 def glb_page(glb: bytes, title: str, *, live: str | None = None) -> str:
     """The page of a GLB file; presets become buttons. ``live`` as of :func:`toongeo.io.page_html`."""
-    shown = {name: weights for name, weights in PRESETS.items() if not name.startswith("viseme_")}
-    return page_html(glb, title=title, presets=shown, live=live)
+    return page_html(glb, title=title, presets=page_presets(), live=live)

@@ -76,5 +76,6 @@ class ArkitDriver:
         bad = np.argwhere(~np.isfinite(frames))
         if len(bad):
             frame, column = bad[0]
-            raise ValueError(f"recording: expected finite weights, got {frames[frame, column]} for {self.columns[column]} in frame {frame}")
+            got = f"{frames[frame, column]} for {self.columns[column]} in frame {frame}"
+            raise ValueError(f"recording: expected finite weights, got {got}")
         return Take.of_frames(frames @ scheme_matrix("arkit", self.columns), 60.0 if fps is None else fps)

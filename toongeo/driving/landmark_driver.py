@@ -12,8 +12,8 @@ from toongeo.driving.landmark_frames import landmark_frames
 from toongeo.driving.landmark_pose import FEWEST, LandmarkPose, landmark_pose
 from toongeo.driving.landmark_rig import LandmarkRig
 from toongeo.driving.one_euro_filter import OneEuroFilter
-from toongeo.model.expression_schemes import EXPRESSIONS
 from toongeo.geometry.one_thread import one_thread
+from toongeo.model.expression_schemes import EXPRESSIONS
 from toongeo.pipeline import Rig
 
 if TYPE_CHECKING:

@@ -84,10 +84,10 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
     shape = rig.neutral + np.tensordot(weights, rig.deltas, 1)
     pose = LandmarkPose(weights, *scaled_orthographic_pose(shape[there], pixels[there]))
     for step in range(_STEPS):
-        trust = there.astype(np.float64)
+        trust: Floats = there.astype(np.float64)
         if step >= _PLAIN_STEPS:
             square = (np.nan_to_num(pose.errors(pixels, rig)) ** 2).sum(axis=1)
-            trust /= (1 + square / max(OUTLIER, 3 * noise) ** 2) ** 2
+            trust = trust / (1 + square / max(OUTLIER, 3 * noise) ** 2) ** 2
         after = _step(rig, pixels, pose, trust, noise)
         change = np.abs(after.weights - pose.weights).max()
         pose = after

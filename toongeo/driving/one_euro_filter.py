@@ -91,6 +91,6 @@ class OneEuroFilter:
         self._raw = np.where(np.isnan(points), raw, points)
 
 
-def _share(cutoff: np.ndarray | float, step: float) -> np.ndarray | float:
+def _share(cutoff: np.ndarray | float, step: float) -> np.ndarray:
     """Of the new sample: ``1 / (1 + tau / T)`` with ``tau = 1 / (2 pi f)``."""
-    return 1.0 / (1.0 + 1.0 / (2.0 * np.pi * np.asarray(cutoff) * step))
+    return np.asarray(1.0 / (1.0 + 1.0 / (2.0 * np.pi * np.asarray(cutoff) * step)))

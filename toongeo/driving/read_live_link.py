@@ -110,7 +110,9 @@ def _numbers(
     values = np.empty((len(lines), len(columns)))
     for frame, (line, row) in enumerate(lines):
         if count is not None and row[count].strip() not in {"52", "61", str(len(columns))}:
-            raise ValueError(f"{path}, line {line}: expected {len(columns)} in column BlendShapeCount, got {row[count]!r}")
+            raise ValueError(
+                f"{path}, line {line}: expected {len(columns)} in column BlendShapeCount, got {row[count]!r}"
+            )
         for k, i in enumerate(sorted(columns)):
             try:
                 values[frame, k] = float(row[i])
@@ -140,8 +142,8 @@ def _times(
     times += 86400.0 * np.r_[0, np.cumsum(np.diff(times) < -43200.0)]  # past midnight
     late = np.flatnonzero(np.diff(times) <= 0)
     if len(late):
-        line = lines[late[0] + 1][0]
-        raise ValueError(f"{path}, line {line}: expected a Timecode after the one before, got {lines[late[0] + 1][1][column]!r}")
+        line, row = lines[late[0] + 1]
+        raise ValueError(f"{path}, line {line}: expected a Timecode after the one before, got {row[column]!r}")
     return times - times[0]
 
 

@@ -38,5 +38,5 @@ export async function loadAvatar(bytes) {
     return found;
   }
 
-  return { scene: gltf.scene, bounds: new Box3().setFromObject(gltf.scene), clips: gltf.animations, names, set, weights, wear };
+  return { scene: gltf.scene, bounds: new Box3().setFromObject(gltf.scene, true), clips: gltf.animations, names, set, weights, wear };
 }

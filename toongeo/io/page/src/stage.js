@@ -4,7 +4,7 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 const STEP = Math.PI / 36; // of an arrow key
 const ZOOM = 1.08;
-const MARGIN = 1.02; // of the head's height; perspective and the tool bar take their part
+const MARGIN = 1.12; // of the head's height: what is seen of the world
 
 export class Stage {
   constructor(canvas) {
