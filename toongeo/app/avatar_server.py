@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import secrets
 from http import HTTPStatus
@@ -101,7 +102,8 @@ class AvatarServer:
             ("X-Content-Type-Options", "nosniff"),
             ("X-Frame-Options", "DENY"),
         ):
-            del response.headers[name]
+            if name in response.headers:
+                del response.headers[name]  # a second value would be added, not replace the first
             response.headers[name] = value
         return response
 
@@ -124,11 +126,13 @@ class AvatarServer:
         if is_page:
             self._watched.set()
         try:
-            async for message in connection:
-                if not is_page:
-                    self._pass_on(connection, message)
-                elif connection is self._pages[0]:
-                    self._tell(self._sources, {"applied": 1})
+            # However a connection ends, a message too large included, the others go on.
+            with contextlib.suppress(load_websockets().ConnectionClosed):
+                async for message in connection:
+                    if not is_page:
+                        self._pass_on(connection, message)
+                    elif connection is self._pages[0]:
+                        self._tell(self._sources, {"applied": 1})
         finally:
             members.remove(connection)
 

@@ -80,14 +80,14 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
     ValueError
         If the landmarks lie on a line.
     """
-    there = np.isfinite(pixels).all(axis=1)
+    there = np.asarray(np.isfinite(pixels).all(axis=1))
     shape = rig.neutral + np.tensordot(weights, rig.deltas, 1)
     pose = LandmarkPose(weights, *scaled_orthographic_pose(shape[there], pixels[there]))
     for step in range(_STEPS):
-        trust: Floats = there.astype(np.float64)
+        trust = there.astype(np.float64)
         if step >= _PLAIN_STEPS:
             square = (np.nan_to_num(pose.errors(pixels, rig)) ** 2).sum(axis=1)
-            trust = trust / (1 + square / max(OUTLIER, 3 * noise) ** 2) ** 2
+            trust = there / (1 + square / max(OUTLIER, 3 * noise) ** 2) ** 2
         after = _step(rig, pixels, pose, trust, noise)
         change = np.abs(after.weights - pose.weights).max()
         pose = after

@@ -64,7 +64,8 @@ def page_html(
 
 def _content_policy(script: str, style: str, live: str | None) -> str:
     """What the page may do: run this script and this style, read its own data, and talk to ``live``."""
-    connections = " ".join(["blob:", "data:"] + ([live] if live else []))
+    # A policy names a place without the query, where the token is.
+    connections = " ".join(["blob:", "data:"] + ([live.partition("?")[0]] if live else []))
     return (
         f"default-src 'none'; script-src {_digest(script)}; style-src {_digest(style)}; img-src blob: data:; "
         f"connect-src {connections}; base-uri 'none'; form-action 'none'"

@@ -70,9 +70,17 @@ async function start() {
     });
   }
 
+  // Weights may come a thousand times a second; sliders follow once a frame.
+  let unseen = {};
   const apply = (weights) => {
+    if (!Object.keys(unseen).length) {
+      requestAnimationFrame(() => {
+        panel.show(unseen);
+        unseen = {};
+      });
+    }
+    Object.assign(unseen, weights);
     set(weights);
-    panel.show(weights);
   };
   tell(`${avatar.names.length} expressions. Drag to turn, scroll to zoom.`);
   if (settings.live) listen(settings.live, avatar.names, { apply, tell });
