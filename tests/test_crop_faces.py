@@ -5,7 +5,7 @@ import pytest
 
 from toongeo.avatar_scene import avatar_scene
 from toongeo.crop_faces import crop_faces
-from toongeo.io import read_glb, read_obj
+from toongeo.io import read_glb, read_obj, split_seams
 
 
 def scene(avatar, crop):
@@ -17,7 +17,7 @@ def test_head_and_bust_are_the_whole_template(avatar, crop):
     head = scene(avatar, crop).meshes[0]
     np.testing.assert_array_equal(head.vertices, avatar.rig.neutral)
     np.testing.assert_array_equal(head.faces, avatar.faces)
-    np.testing.assert_array_equal(head.targets, avatar.rig.deltas)
+    np.testing.assert_array_equal(head.targets, np.concatenate([avatar.rig.deltas, avatar.rig.gaze]))
 
 
 def test_a_face_is_the_same_triangles_with_the_same_corners_uv_and_targets(avatar):
@@ -25,7 +25,7 @@ def test_a_face_is_the_same_triangles_with_the_same_corners_uv_and_targets(avata
     kept = crop_faces(model, "face")
     np.testing.assert_array_equal(mesh.vertices[mesh.faces], avatar.rig.neutral[model.faces[kept]])
     np.testing.assert_array_equal(mesh.uv[mesh.uv_faces], model.uv[model.uv_faces[kept]])
-    np.testing.assert_array_equal(mesh.targets[:, mesh.faces], avatar.rig.deltas[:, model.faces[kept]])
+    np.testing.assert_array_equal(mesh.targets[:46, mesh.faces], avatar.rig.deltas[:, model.faces[kept]])
     np.testing.assert_array_equal(np.unique(mesh.faces), np.arange(len(mesh.vertices)))  # nothing idle
     outside = model.region("scalp") | model.region("ears") | model.region("neck")
     assert not outside[model.faces[kept]].any()
@@ -47,12 +47,14 @@ def test_files_of_a_face_read_back(avatar, node, tmp_path):
     for suffix in (".glb", ".obj", ".ply"):
         avatar.save(tmp_path / f"face{suffix}", crop="face")
     document = read_glb(tmp_path / "face.glb").json
-    assert len(document["meshes"]) == 3 and len(document["meshes"][0]["extras"]["targetNames"]) == 46
+    assert [mesh["name"] for mesh in document["meshes"]] == ["head", "teeth", "tongue", "eye_left", "eye_right"]
+    assert len(document["meshes"][0]["extras"]["targetNames"]) == 54
     np.testing.assert_array_equal(
         read_obj(tmp_path / "face.obj").vertices, np.vstack([mesh.vertices for mesh in expected.meshes])
     )
     header = (tmp_path / "face.ply").read_bytes()[:400].decode("latin-1")
-    assert f"element vertex {sum(len(mesh.vertices) for mesh in expected.meshes)}\n" in header
+    points = sum(len(split_seams(mesh.faces, mesh.uv_faces)[0]) for mesh in expected.meshes)
+    assert f"element vertex {points}\n" in header
     (verdict,) = node("validate.mjs", tmp_path / "face.glb")
     assert (verdict["errors"], verdict["warnings"]) == (0, 0), verdict
 

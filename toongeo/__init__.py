@@ -9,7 +9,8 @@ The stages, in the order in which :func:`make_avatar` calls them:
 5. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face.
 6. :func:`fit_eyes`, :func:`close_lids`, :func:`clear_lids` - eyeballs, and lids that close over them.
 7. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
-8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
+8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .vrm, .usdz, .obj, .ply);
+   :func:`load_avatar` reads a .glb back.
 
 For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space.
 
@@ -24,11 +25,14 @@ __getattr__, __dir__, __all__ = attach(
     __name__,
     {
         "Avatar": "avatar",
+        "load_avatar": "load_avatar",
         "make_avatar": "make_avatar",
         "read_image": "io",
         "read_landmarks": "io",
         "write_landmarks": "io",
         "default_model": "model",
+        "expression_weights": "model",
+        "preset": "model",
         "MorphableModel": "model",
         "ScaledOrthographicCamera": "render",
         "PerspectiveCamera": "render",

@@ -16,9 +16,12 @@ from toongeo.geometry import laplacian_align as laplacian_align
 from toongeo.io import read_image as read_image
 from toongeo.io import read_landmarks as read_landmarks
 from toongeo.io import write_landmarks as write_landmarks
+from toongeo.load_avatar import load_avatar as load_avatar
 from toongeo.make_avatar import make_avatar as make_avatar
 from toongeo.model import MorphableModel as MorphableModel
 from toongeo.model import default_model as default_model
+from toongeo.model import expression_weights as expression_weights
+from toongeo.model import preset as preset
 from toongeo.pipeline import AlignedFace as AlignedFace
 from toongeo.pipeline import ClassicalParser as ClassicalParser
 from toongeo.pipeline import Eyes as Eyes

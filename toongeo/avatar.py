@@ -144,39 +144,53 @@ class Avatar:
         return render_mesh(surfaces, camera, size, light=_soft_light())
 
     def save(self, path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> None:
-        """Write a file by its suffix, or files by a format.
+        """Write a file by its suffix, or what a format names.
 
-        ======================  ==========================================================================
-        ``.glb``                crop, quantize, normals, texture, animation, names, loadable
-        ``.obj``                crop; writes ``.mtl`` and ``.png`` beside it
-        ``.ply``                crop
-        ======================  ==========================================================================
+        ================  ================================================================================
+        ``.glb``          options ``crop quantize normals texture animation names sparse loadable``
+        ``.vrm``          VRM 1.0 with a body of bones alone; ``crop normals texture meta``
+        ``.usdz``         with blend shapes, needs the extra ``usd``; ``crop names``
+        ``.obj``          with ``.mtl`` and ``.png`` beside it; ``crop``
+        ``.ply``          with uv, and colours at the vertices; ``crop``
+        ``obj-sequence``  a folder with an ``.obj`` an expression; ``crop names``
+        ================  ================================================================================
 
         Parameters
         ----------
         path
-            File to write.
+            File to write, or folder.
         format : optional
-            One of the names above in place of the suffix.
+            One of the names above, in place of the suffix.
         crop : {"head", "bust", "face"}
             "head" and "bust" are all that the template has; "face" is the front of the face with eyes and teeth.
         quantize : bool
-            Integers in place of floats: half the size, off by 0.02 mm or less.
+            Integers in place of floats: half the size, off by 0.03 mm or less.
         normals : bool
-            Whether expressions bend the normals too; viewers that compute them need it not.
+            Whether expressions bend the normals too: smoother shading in viewers that do not compute them, and a file
+            half as big again.
         texture : {"png", "jpeg", None}
             None: each part in its mean colour.
         animation : "demo", None, or a pair of times (f,) in s and weights (f, 46) or (f, 54)
-        names : {"toongeo", "arkit"}
-            Of the targets: the rig's 46 and 8 directions of gaze, or exactly the 52 of ARKit.
+        names : {"toongeo", "arkit", "talkinghead"}
+            Of the targets: the rig's 46 and 8 directions of gaze; exactly the 52 of ARKit; or what players look for
+            that speak by Oculus visemes, such as TalkingHead: those 52, 15 ``viseme_*``, ``mouthOpen``,
+            ``mouthSmile``, ``eyesClosed``, ``eyesLookUp`` and ``eyesLookDown``, in meshes ``Wolf3D_Head``,
+            ``Wolf3D_Teeth``, ... below a node ``Armature``, which has no bones.
+        sparse : bool
+            False: every target stores every vertex, for readers that know no sparse accessors.
         loadable : bool
-            Whether :func:`toongeo.load_avatar` can read the file back. It then holds how the picture was parsed (some
-            hundred kB), and the fit. A cropped file, or one of other names, never is.
+            Whether :func:`toongeo.load_avatar` can read the file back. It then holds the fit and how the picture was
+            parsed (some hundred kB). A file with another crop or other names never is.
+        meta : toongeo.io.VrmMeta
+            Name, authors and licence; by default nothing is allowed to others.
 
         Raises
         ------
         ValueError
-            If the suffix or the format is unknown, or has no such option, or the option no such value.
+            If the suffix or the format is unknown, or has no such option, or the option no such value; if a field of
+            the avatar is of a kind that a loadable file cannot hold.
+        ImportError
+            If ``.usdz`` is asked for without the extra.
         OSError
             If a file cannot be written; nothing half-written is left.
         """

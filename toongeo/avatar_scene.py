@@ -203,15 +203,8 @@ def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[Sc
 
 
 def _plain(mesh: SceneMesh) -> SceneMesh:
-    """A mesh in the mean colour of its vertices."""
-    red, green, blue = (vertex_colours(mesh).mean(axis=0) / 255).tolist()
+    """A mesh in the mean colour that its texture has at its vertices."""
+    assert mesh.texture is not None and mesh.uv is not None
+    colours = sample_image(mesh.texture, uv_to_px(mesh.uv, *mesh.texture.shape[:2]))
+    red, green, blue = (colours.mean(axis=0) / 255).tolist()
     return replace(mesh, texture=None, color=(red, green, blue))
-
-
-def vertex_colours(mesh: SceneMesh) -> np.ndarray:
-    """Colours (n, 3) uint8 that the texture of a mesh has at its vertices."""
-    assert mesh.texture is not None and mesh.uv is not None and mesh.uv_faces is not None
-    corner = np.zeros(len(mesh.vertices), int)
-    corner[mesh.faces.ravel()] = mesh.uv_faces.ravel()  # at a seam, any of the corners
-    colours = sample_image(mesh.texture, uv_to_px(mesh.uv[corner], *mesh.texture.shape[:2]))
-    return np.rint(colours).astype(np.uint8)

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from toongeo.metrics import MeshQuality
 from toongeo.avatar_report import AvatarReport
+from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
 from toongeo.pipeline.fit.face_fit import FitReport, PhotometricReport
@@ -160,7 +160,7 @@ class _Reader:
             return (tuple if kind == "tuple" else list)(self.value(part) for part in content)
         if kind == "mapping":
             return {key: self.value(part) for key, part in content.items()}
-        simple = {"array": self.arrays, "known": self.known, "eye": self.model.eyes}
+        simple: dict[str, Any] = {"array": self.arrays, "known": self.known, "eye": self.model.eyes}
         if kind in simple:
             return simple[kind][content]
         if kind == "model":

@@ -54,7 +54,7 @@ def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = 
         known = _rig_arrays(scene, model)
         state = decode_state(document.attachment, known, model)
         return Avatar(**state, texture=_texture(scene))
-    except (KeyError, IndexError, TypeError, ValueError) as error:
+    except (LookupError, TypeError, AttributeError, ValueError) as error:
         raise ValueError(f"path: {path} cannot be loaded: {error}") from error
 
 
@@ -69,7 +69,10 @@ def _rig_arrays(scene: Scene, model: MorphableModel) -> dict[str, np.ndarray]:
         mesh, vertex = meshes[part], _file_vertices(meshes[part], part, rows, model)
         neutral[vertex] = mesh.vertices
         for name, delta in zip(mesh.target_names, () if mesh.targets is None else mesh.targets, strict=True):
-            shapes[names.index(name), vertex] = delta
+            with np.errstate(over="ignore"):
+                shapes[names.index(name), vertex] = delta
+    if not np.isfinite(shapes).all():
+        raise ValueError("a displacement is beyond float32")
     return {"neutral": neutral, "deltas": shapes[: -len(GAZE_NAMES)], "gaze": shapes[-len(GAZE_NAMES) :]}
 
 

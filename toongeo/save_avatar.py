@@ -6,11 +6,11 @@ import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from toongeo.avatar_scene import Shapes, avatar_scene, demo_clip, vertex_colours, weight_clip
+from toongeo.avatar_scene import avatar_scene, demo_clip, weight_clip
 from toongeo.avatar_state import encode_state
 from toongeo.crop_faces import Crop
 from toongeo.io import (
@@ -28,44 +28,31 @@ from toongeo.io import (
     write_usdz,
     write_vrm,
 )
+from toongeo.io.write_usdz import usd_modules
 from toongeo.model.expression_schemes import PRESETS, SCHEMES
+from toongeo.named_shapes import PLAYER_MESHES, PLAYER_ROOT, Names, named_shapes, renamed_scene
 from toongeo.pipeline import Rig
 from toongeo.pipeline.rig.gaze import SIDEWAYS, UPDOWN
+from toongeo.render import sample_image, uv_to_px
 
 if TYPE_CHECKING:
     from toongeo.avatar import Avatar
 
 Weights = Mapping[str, float]
-Names = Literal["toongeo", "arkit", "talkinghead"]
 Texture = Literal["png", "jpeg"] | None
 Animation = Literal["demo"] | None | tuple[Any, Any]
 EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
 COARSE_MM = 0.02  # the same for a quantized file: a tenth of a pixel where a head is a thousand high
 COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
 
-# What players that speak by Oculus visemes look for, as in avatars of Ready Player Me: meshes below a node, 15 visemes
-# of which three have letters for names, and five mixtures.
-PLAYER_ROOT = "Armature"
-PLAYER_MESHES = {
-    "head": "Wolf3D_Head",
-    "teeth": "Wolf3D_Teeth",
-    "tongue": "Wolf3D_Tongue",
-    "eye_left": "EyeLeft",
-    "eye_right": "EyeRight",
-}
-_LETTERS = {"ih": "I", "oh": "O", "ou": "U"}
-PLAYER_VISEMES = [(f"viseme_{_LETTERS.get(name, name)}", f"viseme_{name}") for name in SCHEMES["oculus"]]
-PLAYER_EXTRAS: Shapes = [
-    ("mouthOpen", {"jawOpen": 1.0}),
-    ("mouthSmile", {"mouthSmileLeft": 1.0, "mouthSmileRight": 1.0}),
-    ("eyesClosed", {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}),
-    ("eyesLookUp", {"eyeLookUpLeft": 1.0, "eyeLookUpRight": 1.0}),
-    ("eyesLookDown", {"eyeLookDownLeft": 1.0, "eyeLookDownRight": 1.0}),
-]
 
-
-def save_avatar(path: Path, avatar: Avatar, kind: str | None, options: dict[str, Any]) -> None:
+def save_avatar(path: Path, avatar: Avatar, kind: str | None, options: Mapping[str, Any]) -> None:
     """What :meth:`toongeo.Avatar.save` does."""
+    writer_for(path, kind, options)(path, avatar, **options)
+
+
+def writer_for(path: Path, kind: str | None, options: Mapping[str, Any]) -> Callable[..., None]:
+    """The writer of a format, or of a suffix if that is None; errors as of :meth:`toongeo.Avatar.save`."""
     suffix = path.suffix.lower() if kind is None else kind
     writer = WRITERS.get(suffix)
     if writer is None and kind is None:
@@ -76,7 +63,9 @@ def save_avatar(path: Path, avatar: Avatar, kind: str | None, options: dict[str,
     for name in options:
         if name not in known:
             raise ValueError(f"{name}: no option of {suffix}, which has {', '.join(known)}")
-    writer(path, avatar, **options)
+    if suffix == ".usdz":
+        usd_modules()
+    return writer
 
 
 def _write_glb(
@@ -95,7 +84,7 @@ def _write_glb(
     scene = avatar_scene(
         avatar,
         crop=crop,
-        shapes=named_shapes(avatar.rig, names),
+        shapes=named_shapes(names),
         animation=_animation(avatar.rig, animation),
         textured=_check_texture(texture) is not None,
     )
@@ -156,30 +145,6 @@ def rig_arrays(rig: Rig) -> dict[str, np.ndarray]:
     return {"neutral": rig.neutral, "deltas": rig.deltas, "gaze": rig.gaze}
 
 
-def named_shapes(rig: Rig, names: Names) -> Shapes | None:
-    """Targets under the names that are asked for; None for the rig's own."""
-    if names == "toongeo":
-        return None
-    if names == "arkit":
-        return list(SCHEMES["arkit"].items())
-    if names == "talkinghead":
-        return [
-            *SCHEMES["arkit"].items(),
-            *((name, PRESETS[viseme]) for name, viseme in PLAYER_VISEMES),
-            *PLAYER_EXTRAS,
-        ]
-    raise ValueError(f"names: expected one of {', '.join(get_args(Names))}, got {names!r}")
-
-
-def renamed_scene(scene: Scene, names: Mapping[str, str]) -> Scene:
-    """The same meshes under other names."""
-    meshes = tuple(replace(mesh, name=names[mesh.name]) for mesh in scene.meshes)
-    clip = scene.animation
-    if clip is not None:
-        clip = replace(clip, weights={names[mesh]: weights for mesh, weights in clip.weights.items()})
-    return Scene(meshes, clip)
-
-
 def _animation(rig: Rig, animation: Animation) -> SceneAnimation | None:
     if animation is None:
         return None
@@ -201,26 +166,35 @@ def _write_obj(path: Path, avatar: Avatar, *, crop: Crop = "head") -> None:
 
 
 def _write_obj_sequence(path: Path, avatar: Avatar, *, crop: Crop = "head", names: Names = "toongeo") -> None:
-    shapes = named_shapes(avatar.rig, names)
+    shapes = named_shapes(names)
     write_obj_sequence(path, avatar_scene(avatar, crop=crop, shapes=shapes, split=False))
 
 
 def _write_ply(path: Path, avatar: Avatar, *, crop: Crop = "head") -> None:
-    """Neutral head and eyeballs in one mesh, with the texture's coordinates and its colours at the vertices."""
-    vertices, faces, colours, uvs, count = [], [], [], [], 0
-    for mesh in avatar_scene(avatar, crop=crop, split=False).meshes:
-        assert mesh.uv is not None and mesh.uv_faces is not None
-        vertex, uv, split = split_seams(mesh.faces, mesh.uv_faces)
-        vertices.append(mesh.vertices[vertex])
-        faces.append(split + count)
-        colours.append(vertex_colours(mesh)[vertex])
-        uvs.append(mesh.uv[uv])
-        count += len(vertex)
-    write_ply(path, np.vstack(vertices), np.vstack(faces), np.vstack(colours), np.vstack(uvs))
+    """Neutral head and eyeballs in one mesh, with uv and the texture's colours at the vertices.
+
+    Vertices keep their order; those on seams, which have several uv, come again at the end.
+    """
+    meshes = avatar_scene(avatar, crop=crop, split=False).meshes
+    points = _joined([(mesh.vertices, mesh.faces) for mesh in meshes])
+    uvs = _joined([(mesh.uv, mesh.uv_faces) for mesh in meshes])
+    vertex, corner, split = split_seams(points[1], uvs[1])
+    again = np.r_[False, vertex[1:] == vertex[:-1]]
+    order = np.argsort(again, kind="stable")
+    uv = uvs[0][corner[order]]
+    colours = np.rint(sample_image(avatar.texture, uv_to_px(uv, *avatar.texture.shape[:2]))).astype(np.uint8)
+    write_ply(path, points[0][vertex[order]], np.argsort(order)[split], colours, uv)
+
+
+def _joined(parts: list[tuple[Any, Any]]) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of all parts, and indices into them."""
+    offsets = np.cumsum([0, *(len(rows) for rows, _ in parts)])
+    indices = [index + offset for (_, index), offset in zip(parts, offsets, strict=False)]
+    return np.vstack([rows for rows, _ in parts]), np.vstack(indices)
 
 
 def _write_usdz(path: Path, avatar: Avatar, *, crop: Crop = "head", names: Names = "toongeo") -> None:
-    shapes = named_shapes(avatar.rig, names)
+    shapes = named_shapes(names)
     write_usdz(path, avatar_scene(avatar, crop=crop, shapes=shapes), tolerance_mm=EXACT_MM)
 
 

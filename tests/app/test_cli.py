@@ -44,7 +44,7 @@ def test_demo_writes_its_four_kinds_of_file(tmp_path, capsys):
         ([str(PICTURE), "--landmarks", str(PICTURE), "-o", "a.glb"], "expected .pts"),
         (
             [str(PICTURE), "--landmarks", str(POINTS), "-o", "a.fbx"],
-            "output: expected a name that ends in .glb",
+            "path: expected a name that ends in .glb",
         ),
         ([str(PICTURE), "--landmarks", str(POINTS), "-o", "no/such/folder/a.glb"], "no/such/folder"),
         ([str(PORTRAITS / "blue_girl.pts"), "--landmarks", str(POINTS), "-o", "a.glb"], "blue_girl.pts"),

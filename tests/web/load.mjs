@@ -30,6 +30,7 @@ function described(mesh) {
     triangles: mesh.geometry.index.count / 3,
     position: mesh.position.toArray(),
     bounds: [bounds.min.toArray(), bounds.max.toArray()],
+    scale: mesh.scale.toArray(),
     textured: Boolean(mesh.material.map),
     doubleSided: mesh.material.side === 2,
     targets: names,

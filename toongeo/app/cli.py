@@ -20,7 +20,8 @@ def main(arguments: list[str] | None = None) -> int:
     Returns
     -------
     int
-        0 if all went well; 2 on bad input or a failed fit, with one line on standard error that says what and where.
+        0 if all went well; 2 on bad input, a failed fit or a missing extra, with one line on standard error that says
+        what and where.
     """
     options = _parser().parse_args(arguments)
     try:
@@ -40,9 +41,16 @@ def _parser() -> argparse.ArgumentParser:
     make = commands.add_parser("make", help="turn a picture and its landmarks into an avatar")
     make.add_argument("image", type=Path, metavar="IMAGE")
     make.add_argument("--landmarks", type=Path, required=True, metavar="FILE", help=".pts, .npy, .csv or .txt")
-    make.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, .obj or .ply")
+    make.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, .vrm, .usdz, .obj, .ply")
     make.add_argument("--texture-size", type=int, default=1024, metavar="N", help="side of the atlas (default 1024)")
     make.add_argument("--crop", choices=("head", "bust", "face"), default="head", help="what to write (default head)")
+    make.add_argument("--format", choices=("obj-sequence",), help="OUT is a folder of an .obj an expression")
+    make.add_argument("--quantize", action="store_true", help=".glb of half the size, off by 0.03 mm or less")
+    make.add_argument(
+        "--names", choices=("toongeo", "arkit", "talkinghead"), help="of the expressions in the file (default toongeo)"
+    )
+    make.add_argument("--texture", choices=("png", "jpeg", "none"), help="picture in a .glb or .vrm (default png)")
+    make.add_argument("--author", action="append", metavar="NAME", help="for the licence of a .vrm; may be repeated")
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
     make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
     make.set_defaults(run=_make)
@@ -96,7 +104,25 @@ def _make(options: argparse.Namespace) -> None:
         crop=options.crop,
         snap=options.snap,
         photometric=options.photometric,
+        format=options.format,
+        options=_saving(options),
     )
+
+
+def _saving(options: argparse.Namespace) -> dict[str, Any]:
+    """Those of the options of Avatar.save that were given."""
+    saving: dict[str, Any] = {}
+    if options.quantize:
+        saving["quantize"] = True
+    if options.names:
+        saving["names"] = options.names
+    if options.texture:
+        saving["texture"] = None if options.texture == "none" else options.texture
+    if options.author:
+        from toongeo.io import VrmMeta
+
+        saving["meta"] = VrmMeta(authors=tuple(options.author))
+    return saving
 
 
 def _demo(options: argparse.Namespace) -> None:

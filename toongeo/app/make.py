@@ -1,6 +1,8 @@
 """``toongeo make``: a picture and its landmarks into a file."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -8,7 +10,7 @@ from toongeo.avatar import Avatar
 from toongeo.crop_faces import Crop
 from toongeo.io import read_image, read_landmarks
 from toongeo.make_avatar import STAGES, make_avatar
-from toongeo.save_avatar import SUFFIXES
+from toongeo.save_avatar import writer_for
 
 
 def make(
@@ -20,18 +22,21 @@ def make(
     crop: Crop = "head",
     snap: bool = False,
     photometric: bool = False,
+    format: str | None = None,
+    options: Mapping[str, Any] | None = None,
 ) -> Avatar:
     """Read, build, save and report, with a progress line a stage.
 
-    The options are those of :func:`toongeo.make_avatar` and of :meth:`toongeo.Avatar.save`.
+    The parameters are those of :func:`toongeo.make_avatar` and of :meth:`toongeo.Avatar.save`, whose other options are
+    in ``options``.
 
     Raises
     ------
-    ValueError, OSError
+    ValueError, OSError, ImportError
         For bad input or an output that cannot be written; the output is checked before the work.
     """
-    if output.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"output: expected a name that ends in {', '.join(SUFFIXES)}, got {output}")
+    saving = {"crop": crop, **(options or {})}
+    writer_for(output, format, saving)
     if not output.parent.is_dir():
         raise OSError(f"output: no folder {output.parent} to write {output.name} to")
     img, points = read_image(image), read_landmarks(landmarks)
@@ -46,7 +51,7 @@ def make(
         )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")
-    avatar.save(output, crop=crop)
+    avatar.save(output, format=format, **saving)
     print("\n".join(avatar.report.lines()))
     print(f"wrote {output}")
     return avatar

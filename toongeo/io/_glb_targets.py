@@ -49,7 +49,10 @@ def add_targets(
             continue
         entry = None  # an accessor without buffer view is all zero (3.6.2.3)
         if rows.count:
-            indices = {"bufferView": rows.view, "componentType": builder.described(np.zeros(1, number))["componentType"]}
+            indices = {
+                "bufferView": rows.view,
+                "componentType": builder.described(np.zeros(1, number))["componentType"],
+            }
             values = {"bufferView": builder.view(delta[stored].tobytes())}
             entry = {"count": rows.count, "indices": indices, "values": values}
         accessors[target] = builder.add("accessors", **builder.described(kept, bounds, normalized), sparse=entry)

@@ -38,10 +38,9 @@ def glb_scene(document: GlbDocument) -> Scene:
     """
     textures: dict[int, NDArray[np.uint8]] = {}
     try:
-        return Scene(
-            tuple(_mesh(document, node, textures) for node in document.json.get("nodes", [])),
-            _animation(document),
-        )
+        with np.errstate(all="ignore"):  # numbers that are no longer finite are refused by the scene
+            meshes = [_mesh(document, node, textures) for node in document.json.get("nodes", [])]
+        return Scene(tuple(meshes), _animation(document))
     except (LookupError, TypeError, AttributeError, ArithmeticError, OSError) as error:  # OSError: of the picture
         reason = f"{type(error).__name__}: {error}"[:200]
         raise ValueError(f"document: expected a GLB as toongeo writes it, got another ({reason})") from error

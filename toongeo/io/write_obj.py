@@ -1,7 +1,7 @@
 """A scene as Wavefront OBJ, for programs that keep no morph targets."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -48,24 +48,33 @@ def obj_files(path: Path, scene: Scene) -> dict[str | os.PathLike[str], bytes]:
     for number, mesh in enumerate(scene.meshes):
         materials += _material(f"material_{number}", mesh, path.stem, pictures, files, path.parent)
     files[path.with_suffix(".mtl")] = ("\n".join(materials) + "\n").encode()
-    files[path] = obj_text(scene, f"{path.stem}.mtl", [mesh.vertices for mesh in scene.meshes])
+    vertices = ("\n".join(_rows("v", mesh.vertices)) for mesh in scene.meshes)
+    files[path] = obj_text(obj_frames(scene, f"{path.stem}.mtl"), vertices)
     return files
 
 
-def obj_text(scene: Scene, library: str, vertices: Sequence[NDArray[np.floating]]) -> bytes:
-    """An ``.obj`` of the scene with these vertices for its meshes, and the materials of a library."""
-    lines = ["# mm; +X the subject's left, +Y up, +Z out of the face", f"mtllib {library}"]
-    first = uv = 1
-    for number, (mesh, points) in enumerate(zip(scene.meshes, vertices, strict=True)):
-        lines += [f"o {_token(mesh.name)}", f"usemtl material_{number}", *_geometry(mesh, points, first, uv)]
-        first += len(points)
+def obj_text(frames: Iterable[tuple[str, str]], vertices: Iterable[str]) -> bytes:
+    """An ``.obj``: the lines of the vertices of each mesh in their frame."""
+    parts = [f"{before}{lines}\n{after}" for (before, after), lines in zip(frames, vertices, strict=True)]
+    return "".join(parts).encode()
+
+
+def obj_frames(scene: Scene, library: str) -> list[tuple[str, str]]:
+    """What stands before and after the vertices of each mesh; ``library`` is the file of the materials."""
+    frames: list[tuple[str, str]] = []
+    start = f"# mm; +X the subject's left, +Y up, +Z out of the face\nmtllib {library}\n"
+    vertex = uv = 1
+    for number, mesh in enumerate(scene.meshes):
+        before = f"{start}o {_token(mesh.name)}\nusemtl material_{number}\n"
+        frames.append((before, "\n".join(_faces(mesh, vertex, uv)) + "\n"))
+        start = ""
+        vertex += len(mesh.vertices)
         uv += 0 if mesh.uv is None else len(mesh.uv)
-    return ("\n".join(lines) + "\n").encode()
+    return frames
 
 
-def _geometry(mesh: SceneMesh, vertices: NDArray[np.floating], vertex: int, uv: int) -> Iterator[str]:
-    """Lines of one object whose first vertex and uv have these (1-based) numbers in the file."""
-    yield from _rows("v", vertices)
+def _faces(mesh: SceneMesh, vertex: int, uv: int) -> Iterator[str]:
+    """Lines of uv and faces of an object whose first vertex and uv have these (1-based) numbers in the file."""
     corners = (mesh.faces + vertex).tolist()
     yield "s 1"  # smooth shading, as no normals are written
     if mesh.uv is None or mesh.uv_faces is None:

@@ -5,10 +5,11 @@ import re
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.scene import Scene
-from toongeo.io.write_obj import obj_files, obj_text
+from toongeo.io.write_obj import obj_files, obj_frames, obj_text
 
 __all__ = ["write_obj_sequence"]
 
@@ -19,7 +20,8 @@ def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: st
     """Write ``000_neutral.obj`` and ``001_jawOpen.obj`` ... for every target, with one ``.mtl`` and its textures.
 
     All files have the same vertices and faces in the same order, so programs can blend between them. Of a target that
-    several meshes have, all move. Coordinates are rounded to 1e-5 mm. Characters of names that are not letters, digits, ``-`` or ``_`` become ``_``.
+    several meshes have, all move. Coordinates are rounded to 1e-5 mm. Characters of names that are not letters, digits,
+    ``-`` or ``_`` become ``_``.
 
     Parameters
     ----------
@@ -40,19 +42,29 @@ def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: st
     if not re.fullmatch(r"[\w-]+", stem, re.ASCII):
         raise ValueError(f"stem: expected letters, digits, - and _, got {stem!r}")
     folder = Path(folder)
-    files = obj_files(folder / f"{stem}.obj", scene)
-    files.pop(folder / f"{stem}.obj")
-    names = list(dict.fromkeys(name for mesh in scene.meshes for name in mesh.target_names))
-    for number, name in enumerate(["neutral", *names]):
-        weights = {} if number == 0 else {name: 1.0}
-        moved = [np.round(mesh.moved(weights), _DECIMALS) for mesh in scene.meshes]
-        safe = re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:80]
-        files[folder / f"{number:03}_{safe}.obj"] = obj_text(scene, f"{stem}.mtl", moved)
     new = not folder.exists()
     try:
         folder.mkdir(exist_ok=True)
-        atomic_write(files)
+        atomic_write(_files(folder, scene, stem))
     except OSError as error:
         if new and folder.is_dir():
             folder.rmdir()
         raise OSError(error.errno, f"cannot write to {folder}: {error.strerror}") from error
+
+
+def _files(folder: Path, scene: Scene, stem: str) -> dict[str | os.PathLike[str], bytes]:
+    files = obj_files(folder / f"{stem}.obj", scene)
+    files.pop(folder / f"{stem}.obj")
+    frames = obj_frames(scene, f"{stem}.mtl")
+    names = list(dict.fromkeys(name for mesh in scene.meshes for name in mesh.target_names))
+    for number, name in enumerate(["neutral", *names]):
+        weights = {} if number == 0 else {name: 1.0}
+        safe = re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:80]
+        lines = (_vertices(mesh.moved(weights)) for mesh in scene.meshes)
+        files[folder / f"{number:03}_{safe}.obj"] = obj_text(frames, lines)
+    return files
+
+
+def _vertices(points: NDArray[np.floating]) -> str:
+    row = f"v %.{_DECIMALS}f %.{_DECIMALS}f %.{_DECIMALS}f"
+    return "\n".join([row] * len(points)) % tuple(points.ravel().tolist())

@@ -1,7 +1,10 @@
 """A scene as USDZ; the only place that uses usd-core."""
 
+import io
 import os
+import struct
 import tempfile
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +17,8 @@ from toongeo.io.scene import Scene, SceneMesh
 __all__ = ["write_usdz"]
 
 METRES = 1e-3
-_DATE = 315_619_200  # 1980-01-02; zip files know none before 1980
+_HEADER = 30  # bytes of a zip entry before its name
+_PADDING = 0x1986  # kind of extra field that USD itself pads with
 
 
 def write_usdz(path: str | os.PathLike[str], scene: Scene, *, tolerance_mm: float = 1e-3) -> None:
@@ -40,7 +44,7 @@ def write_usdz(path: str | os.PathLike[str], scene: Scene, *, tolerance_mm: floa
     OSError
         If the path cannot be written; nothing half-written remains.
     """
-    usd = _pxr()
+    usd = usd_modules()
     with tempfile.TemporaryDirectory() as folder:
         stage = usd.Usd.Stage.CreateNew(os.path.join(folder, "scene.usdc"))
         usd.UsdGeom.SetStageUpAxis(stage, usd.UsdGeom.Tokens.y)
@@ -61,26 +65,34 @@ def write_usdz(path: str | os.PathLike[str], scene: Scene, *, tolerance_mm: floa
             binding.CreateJointIndicesPrimvar(True).Set([0])
             binding.CreateJointWeightsPrimvar(True).Set([1.0])
         stage.GetRootLayer().Save()
-        for file in os.scandir(folder):
-            os.utime(file, (_DATE, _DATE))  # which the package would tell, and be another every time
-        package = os.path.join(folder, "scene.usdz")
-        if not usd.UsdUtils.CreateNewUsdzPackage(os.path.join(folder, "scene.usdc"), package):
-            raise OSError(f"cannot write {path}: usd-core made no package")
-        content = Path(package).read_bytes()
-    atomic_write({path: content})
+        contents = {name: (Path(folder) / name).read_bytes() for name in ("scene.usdc", *pictures.values())}
+    atomic_write({path: _package(contents)})
+
+
+def _package(contents: dict[str, bytes]) -> bytes:
+    """A zip file as USDZ wants it: nothing compressed, and every content at a multiple of 64 bytes."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as package:
+        for name, content in contents.items():
+            entry = zipfile.ZipInfo(name)  # of 1980: no date makes another file of the same scene
+            padding = -(stream.tell() + _HEADER + len(name) + 4) % 64
+            entry.extra = struct.pack("<HH", _PADDING, padding) + bytes(padding)
+            package.writestr(entry, content)
+    return stream.getvalue()
 
 
 class _Modules:
     """The parts of usd-core."""
 
     def __init__(self) -> None:
-        from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdSkel, UsdUtils, Vt
+        from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdShade, UsdSkel, Vt
 
         self.Gf, self.Sdf, self.Tf, self.Usd, self.UsdGeom = Gf, Sdf, Tf, Usd, UsdGeom
-        self.UsdShade, self.UsdSkel, self.UsdUtils, self.Vt = UsdShade, UsdSkel, UsdUtils, Vt
+        self.UsdShade, self.UsdSkel, self.Vt = UsdShade, UsdSkel, Vt
 
 
-def _pxr() -> Any:
+def usd_modules() -> Any:
+    """usd-core; ImportError that names the extra to install if it is missing."""
     try:
         return _Modules()
     except ImportError as error:

@@ -21,9 +21,23 @@ __all__ = ["write_vrm"]
 EYES = {"leftEye": ("LeftEye", "eye_left"), "rightEye": ("RightEye", "eye_right")}
 GROUND_MM = 1580.0  # of a standing adult: from the ground to the eyes
 # The names that VRM gives a meaning; all others are the user's own.
-PRESETS = frozenset(
-    "happy angry sad relaxed surprised aa ih ou ee oh blink blinkLeft blinkRight "
-    "lookUp lookDown lookLeft lookRight neutral".split()
+PRESETS = (
+    *(
+        "happy",
+        "angry",
+        "sad",
+        "relaxed",
+        "surprised",
+        "aa",
+        "ih",
+        "ou",
+        "ee",
+        "oh",
+        "blink",
+        "blinkLeft",
+        "blinkRight",
+    ),
+    *("lookUp", "lookDown", "lookLeft", "lookRight", "neutral"),
 )
 
 
@@ -126,8 +140,9 @@ def _look_at(offset: NDArray[np.floating], sideways: float, updown: float) -> di
 def _add_bones(builder: GlbBuilder, scene: Scene) -> dict[str, int]:
     """Bones above the meshes, whose nodes are the first; the node of each by VRM's name."""
     nodes = builder.json["nodes"]
-    places, by_name, humanoid = {}, {}, {}
-    rows = [(name, *row) for name, row in _bones().items()]
+    places: dict[str, NDArray[np.floating]] = {}
+    by_name, humanoid = {}, {}
+    rows: list[tuple[str, str, str, NDArray[np.floating]]] = [(name, *row) for name, row in _bones().items()]
     rows += [(name, bone, "Head", _pivot(scene, eye)) for bone, (name, eye) in EYES.items()]
     for name, bone, parent, place in rows:
         above = places.get(parent, np.array([0.0, -GROUND_MM, 0.0]))
