@@ -6,14 +6,13 @@ import socket
 import threading
 import urllib.error
 import urllib.request
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
+from tests.app.running import running
 from toongeo.app.avatar_server import HOST, LARGEST, PAGE, AvatarServer
 from toongeo.app.read_message import read_message
-from toongeo.app.serve import run_server
 from toongeo.driving import Take, send_weights
 from toongeo.driving.websockets_adapter import load_websockets
 from toongeo.model.expression_schemes import EXPRESSIONS
@@ -28,28 +27,6 @@ def glb(avatar, tmp_path_factory):
     path = tmp_path_factory.mktemp("serve") / "face.glb"
     avatar.save(path, texture=None, animation=None, loadable=False, quantize=True)
     return path
-
-
-@contextmanager
-def running(glb, **options):
-    """A server in a thread of its own."""
-    server, ready, loop = AvatarServer(glb), threading.Event(), asyncio.new_event_loop()
-    task = loop.create_task(run_server(server, lambda _: ready.set(), **options))
-
-    def run():
-        asyncio.set_event_loop(loop)
-        with pytest.raises(asyncio.CancelledError):
-            loop.run_until_complete(task)
-        loop.close()
-
-    thread = threading.Thread(target=run)
-    thread.start()
-    assert ready.wait(20)
-    try:
-        yield server
-    finally:
-        loop.call_soon_threadsafe(task.cancel)
-        thread.join()
 
 
 @pytest.fixture(scope="module")

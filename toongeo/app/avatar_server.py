@@ -144,6 +144,11 @@ class AvatarServer:
         else:
             self.show(weights)
 
+    @property
+    def pages(self) -> int:
+        """How many pages are open."""
+        return len(self._pages)
+
     async def first_page(self) -> None:
         """Return when a page has been opened."""
         await self._watched.wait()

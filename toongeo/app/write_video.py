@@ -48,14 +48,17 @@ def write_video(path: Path, frames: Iterable[np.ndarray], size: int, fps: float,
         writer = cv2.VideoWriter(str(draft), cv2.VideoWriter.fourcc(*"mp4v"), fps, (size, size))
         if not writer.isOpened():
             raise OSError(f"cannot write {path}: OpenCV has no MPEG-4 encoder here")
+        written = 0
         try:
             for frame in tqdm(frames, total=count, unit="frame"):
                 if frame.shape != (size, size, 3) or frame.dtype != np.uint8:
                     raise ValueError(f"frames: expected ({size}, {size}, 3) uint8, got {frame.shape} {frame.dtype}")
                 writer.write(np.ascontiguousarray(frame[:, :, ::-1]))
+                written += 1
         finally:
             writer.release()
-        # A full disk is not reported by the encoder: it leaves a file without frames.
-        if not draft.is_file() or draft.stat().st_size == 0:
-            raise OSError(f"cannot write {path}: the encoder wrote nothing")
+        # The encoder does not report a full disk: the file tells.
+        kept = int(cv2.VideoCapture(str(draft)).get(cv2.CAP_PROP_FRAME_COUNT))
+        if kept != written or not kept:
+            raise OSError(f"cannot write {path}: {kept} of {written} frames are in the file")
         os.replace(draft, path)
