@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.app.running import running
-from toongeo.app.avatar_server import HOST, LARGEST, PAGE, AvatarServer
+from toongeo.app.avatar_server import HOST, LARGEST, PAGE, AvatarServer, acknowledged
 from toongeo.app.read_message import read_message
 from toongeo.driving import Take, send_weights
 from toongeo.driving.websockets_adapter import load_websockets
@@ -106,6 +106,11 @@ def test_sockets_of_others_are_refused(server):
         pass
     with pytest.raises(ValueError, match="url: the server refuses it .*401"):
         send_weights(server.source_url + "x", [{"jawOpen": 1}])
+
+
+@pytest.mark.parametrize(("message", "count"), [("12", 12), ("", 0), ("-1", 0), (b"1", 0), ("9" * 99, 0), ("²", 0)])
+def test_acknowledgements_are_numbers(message, count):
+    assert acknowledged(message) == count
 
 
 def test_two_servers_have_two_tokens(glb):

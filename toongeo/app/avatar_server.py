@@ -25,7 +25,7 @@ class AvatarServer:
 
     Whoever connects must know ``token``, which is new for each server. A source sends ``{"jawOpen": 0.5}`` or an array
     of weights in the order of ``names``; every page applies it and acknowledges, and sources are told so by
-    ``{"applied": 1}`` for each message that the first page has applied. What is not understood is answered with
+    ``{"applied": n}`` when the first page has applied n more messages. What is not understood is answered with
     ``{"error": "..."}`` and not passed on.
 
     Parameters
@@ -132,7 +132,7 @@ class AvatarServer:
                     if not is_page:
                         self._pass_on(connection, message)
                     elif connection is self._pages[0]:
-                        self._tell(self._sources, {"applied": 1})
+                        self._tell(self._sources, {"applied": acknowledged(message)})
         finally:
             members.remove(connection)
 
@@ -159,3 +159,9 @@ class AvatarServer:
 
     def _tell(self, connections: list[Any], content: dict[str, Any]) -> None:
         load_websockets().broadcast(connections, json.dumps(content))
+
+
+def acknowledged(message: str | bytes) -> int:
+    """How many messages a page says that it has applied; 0 if it says something else."""
+    digits = str(message)
+    return int(digits) if digits.isascii() and digits.isdigit() and len(digits) < 10 else 0

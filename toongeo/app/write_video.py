@@ -58,7 +58,7 @@ def write_video(path: Path, frames: Iterable[np.ndarray], size: int, fps: float,
         finally:
             writer.release()
         # The encoder does not report a full disk: the file tells.
-        kept = int(cv2.VideoCapture(str(draft)).get(cv2.CAP_PROP_FRAME_COUNT))
+        kept = max(0, int(cv2.VideoCapture(str(draft)).get(cv2.CAP_PROP_FRAME_COUNT)))
         if kept != written or not kept:
             raise OSError(f"cannot write {path}: {kept} of {written} frames are in the file")
         os.replace(draft, path)

@@ -83,7 +83,7 @@ async function start() {
     set(weights);
   };
   tell(`${avatar.names.length} expressions. Drag to turn, scroll to zoom.`);
-  if (settings.live) listen(settings.live, avatar.names, { apply, tell });
+  if (settings.live) listen(settings.live, { apply, tell });
   // For scripts: window.toongeo.set({ jawOpen: 0.5 })
   window.toongeo = { names: avatar.names, set: apply, weights: avatar.weights, project: (point) => stage.project(point) };
   document.documentElement.dataset.ready = 'true';
