@@ -164,7 +164,7 @@ class Avatar:
         crop : {"head", "bust", "face"}
             "head" and "bust" are all that the template has; "face" is the front of the face with eyes and teeth.
         quantize : bool
-            Integers in place of floats: half the size, off by 0.03 mm or less.
+            Displacements as integers: half the size, expressions off by less than 0.1 mm.
         normals : bool
             Whether expressions bend the normals too: smoother shading in viewers that do not compute them, and a file
             half as big again.

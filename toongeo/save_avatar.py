@@ -42,7 +42,7 @@ Weights = Mapping[str, float]
 Texture = Literal["png", "jpeg"] | None
 Animation = Literal["demo"] | None | tuple[Any, Any]
 EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
-COARSE_MM = 0.02  # the same for a quantized file: a tenth of a pixel where a head is a thousand high
+COARSE_MM = 0.04  # the same for a quantized file: a fifth of a pixel where a head is a thousand high
 COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
 
 

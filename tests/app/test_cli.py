@@ -29,6 +29,31 @@ def test_make_crops_snaps_and_refines(tmp_path, capsys):
     assert inner[0] != inner[1]  # another fit, to other eye points
 
 
+def test_make_writes_a_vrm_with_its_author_and_a_small_glb(tmp_path, capsys):
+    from toongeo.io import read_glb
+
+    arguments = ["make", str(PICTURE), "--landmarks", str(POINTS), "--texture-size", "64"]
+    assert main([*arguments, "-o", str(tmp_path / "a.vrm"), "--author", "Ada", "--author", "Bob"]) == 0
+    meta = read_glb(tmp_path / "a.vrm").json["extensions"]["VRMC_vrm"]["meta"]
+    assert meta["authors"] == ["Ada", "Bob"]
+    glb = [*arguments, "-o", str(tmp_path / "a.glb"), "--quantize", "--names", "arkit", "--texture", "none"]
+    assert main(glb) == 0
+    document = read_glb(tmp_path / "a.glb").json
+    assert len(document["meshes"][0]["extras"]["targetNames"]) == 52 and "images" not in document
+    assert document["extensionsUsed"] == ["KHR_mesh_quantization"]
+
+
+def test_an_option_that_the_format_has_not_is_refused_before_the_work(tmp_path, capsys, monkeypatch):
+    arguments = ["make", str(PICTURE), "--landmarks", str(POINTS)]
+    monkeypatch.setattr("toongeo.app.make.make_avatar", None)
+    assert main([*arguments, "-o", str(tmp_path / "a.obj"), "--quantize"]) == 2
+    assert "quantize: no option of .obj" in capsys.readouterr().err
+    monkeypatch.setitem(sys.modules, "pxr", None)
+    assert main([*arguments, "-o", str(tmp_path / "a.usdz")]) == 2
+    assert 'pip install "toongeo[usd]"' in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
 def test_demo_writes_its_four_kinds_of_file(tmp_path, capsys):
     assert main(["demo", "-o", str(tmp_path / "demo")]) == 0
     names = {path.name for path in (tmp_path / "demo").iterdir()}

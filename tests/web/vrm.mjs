@@ -41,8 +41,11 @@ function described(vrm) {
     vrm.scene.updateMatrixWorld(true);
     gaze[name] = ['leftEye', 'rightEye'].map((eye) => {
       const node = vrm.humanoid.getRawBoneNode(eye);
-      const mesh = node.children.find((child) => child.isMesh);
-      return mesh.localToWorld(new Vector3(0, 0, 1)).sub(mesh.localToWorld(new Vector3())).toArray();
+      const mesh = meshes.find((one) => one.name === (eye === 'leftEye' ? 'eye_left' : 'eye_right'));
+      const places = rest[meshes.indexOf(mesh)];
+      const front = places.reduce((best, p, i) => (p.z > places[best].z ? i : best), 0); // the pole of the iris
+      const pole = mesh.localToWorld(mesh.getVertexPosition(front, new Vector3()));
+      return pole.sub(node.getWorldPosition(new Vector3())).normalize().toArray();
     });
     Object.assign(vrm.lookAt, { yaw: 0, pitch: 0 });
   }

@@ -45,7 +45,7 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--texture-size", type=int, default=1024, metavar="N", help="side of the atlas (default 1024)")
     make.add_argument("--crop", choices=("head", "bust", "face"), default="head", help="what to write (default head)")
     make.add_argument("--format", choices=("obj-sequence",), help="OUT is a folder of an .obj an expression")
-    make.add_argument("--quantize", action="store_true", help=".glb of half the size, off by 0.03 mm or less")
+    make.add_argument("--quantize", action="store_true", help=".glb of half the size, off by less than 0.1 mm")
     make.add_argument(
         "--names", choices=("toongeo", "arkit", "talkinghead"), help="of the expressions in the file (default toongeo)"
     )

@@ -14,7 +14,7 @@ COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "
 VERTICES, INDICES = 34962, 34963  # targets of buffer views
 NO_CHECKSUM = "0" * 64  # stands in the file while its checksum is taken
 _CODES = {np.dtype(name): code for code, name in COMPONENTS.items()}
-_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+_TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
 
 
 class GlbBuilder:

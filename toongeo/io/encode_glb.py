@@ -35,8 +35,8 @@ def encode_glb(
     tolerance_mm
         Displacements with no coordinate above this are not stored, unless they cost nothing.
     quantize
-        Positions, displacements and normals as integers (``KHR_mesh_quantization``): less than half the size, and off
-        by at most 1/8,192 of the largest coordinate of their mesh, or by the tolerance.
+        Displacements, normals and uv as integers (``KHR_mesh_quantization``): less than half the size. Displacements
+        are off by at most 1/4,096 of the largest coordinate of their mesh, or by the tolerance; positions are not.
     picture
         ``"png"``, or ``"jpeg"``, which is smaller and not exact.
     sparse

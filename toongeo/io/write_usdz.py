@@ -153,6 +153,7 @@ def _blend_shapes(usd: Any, stage: Any, path: str, prim: Any, mesh: SceneMesh, t
     names, paths = _identifiers(usd, mesh.target_names), []
     for name, delta in zip(names, mesh.targets, strict=True):
         moved = np.flatnonzero((np.abs(delta) > tolerance_mm).any(axis=1))
+        moved = moved if len(moved) else np.zeros(1, int)  # programs drop a shape without points, and so its name
         shape = usd.UsdSkel.BlendShape.Define(stage, f"{path}/{name}")
         shape.CreateOffsetsAttr(_points(usd, delta[moved] * METRES))
         shape.CreatePointIndicesAttr(usd.Vt.IntArray.FromNumpy(moved.astype(np.int32)))

@@ -3,6 +3,7 @@
 import csv
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.io._glb_builder import GlbBuilder
+from toongeo.io._glb_builder import VERTICES, GlbBuilder
 from toongeo.io._glb_scene import METRES, GlbOptions, Picture, add_scene
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.scene import Scene
@@ -55,8 +56,8 @@ def write_vrm(
     """Write a ``.vrm``: a GLB with the extension ``VRMC_vrm``; atomically, the same bytes for the same arguments.
 
     The bones that a humanoid must have are there, in T-pose where those of an adult of 1.7 m are, in metres, the
-    ground at y = 0 and the face along +Z. All meshes hang on the head's bone; ``eye_left`` and ``eye_right`` on bones
-    of their own at their pivots, which turn them.
+    ground at y = 0 and the face along +Z. All meshes are skinned to the head's bone, neck included; ``eye_left`` and
+    ``eye_right`` to bones of their own at their pivots, which turn them.
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def write_vrm(
             raise ValueError(f"scene: expected a mesh {eye!r} with a pivot, got {', '.join(names)}")
     binds = {name: _binds(scene, name, weights) for name, weights in expressions.items()}
     builder = GlbBuilder()
-    still = Scene(scene.meshes)
+    still = Scene(tuple(replace(mesh, pivot=None) for mesh in scene.meshes))  # skins hold the places of bones
     add_scene(builder, still, GlbOptions(normal_deltas=normal_deltas, tolerance_mm=tolerance_mm, picture=picture))
     bones = _add_bones(builder, scene)
     head = _bones()["Head"][2]
@@ -138,7 +139,7 @@ def _look_at(offset: NDArray[np.floating], sideways: float, updown: float) -> di
 
 
 def _add_bones(builder: GlbBuilder, scene: Scene) -> dict[str, int]:
-    """Bones above the meshes, whose nodes are the first; the node of each by VRM's name."""
+    """The bones, and the skin of the meshes, whose nodes are the first; the node of each by VRM's name."""
     nodes = builder.json["nodes"]
     places: dict[str, NDArray[np.floating]] = {}
     by_name, humanoid = {}, {}
@@ -150,14 +151,28 @@ def _add_bones(builder: GlbBuilder, scene: Scene) -> dict[str, int]:
         places[name], by_name[name], humanoid[bone] = place, index, index
         if parent:
             nodes[by_name[parent]].setdefault("children", []).append(index)
-    hanging = {eye: name for name, eye in EYES.values()}
-    for index, mesh in enumerate(scene.meshes):
-        bone = hanging.get(mesh.name, "Head")
-        pivot = np.zeros(3) if mesh.pivot is None else mesh.pivot
-        nodes[index]["translation"] = ((pivot - places[bone]) * METRES).tolist()
-        nodes[by_name[bone]].setdefault("children", []).append(index)
-    builder.json["scenes"] = [{"nodes": [by_name["Hips"]]}]
+    builder.json["scenes"] = [{"nodes": [*range(len(scene.meshes)), by_name["Hips"]]}]
+    _add_skin(builder, scene, places, by_name)
     return humanoid
+
+
+def _add_skin(
+    builder: GlbBuilder, scene: Scene, places: dict[str, NDArray[np.floating]], nodes: dict[str, int]
+) -> None:
+    """Every mesh follows one bone: an eyeball that of its eye, all else that of the head."""
+    inverse = np.tile(np.eye(4, dtype="<f4"), (len(places), 1, 1))
+    inverse[:, 3, :3] = -np.array(list(places.values())) * METRES  # a row is a column of the matrix in the file
+    matrices = builder.accessor(inverse.reshape(-1, 16))
+    skin = builder.add("skins", inverseBindMatrices=matrices, joints=[nodes[name] for name in places])
+    hanging = {eye: name for name, eye in EYES.values()}
+    for node, mesh in enumerate(scene.meshes):
+        attributes = builder.json["meshes"][node]["primitives"][0]["attributes"]
+        count = builder.json["accessors"][attributes["POSITION"]]["count"]
+        joints, weights = np.zeros((count, 4), "<u1"), np.zeros((count, 4), "<u1")
+        joints[:, 0], weights[:, 0] = list(places).index(hanging.get(mesh.name, "Head")), 255
+        attributes["JOINTS_0"] = builder.accessor(joints, VERTICES)
+        attributes["WEIGHTS_0"] = builder.accessor(weights, VERTICES, normalized=True)
+        builder.json["nodes"][node]["skin"] = skin
 
 
 def _pivot(scene: Scene, name: str) -> NDArray[np.floating]:
