@@ -79,3 +79,28 @@ def node():
         return json.loads(done.stdout)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def browse(node, tmp_path_factory):
+    """``browse(url, steps)`` -> what headless Chromium tells (tests/web/browse.mjs), and the folder of its pictures.
+
+    Skips without Chromium or playwright-core; fails if TOONGEO_REQUIRE_WEB=1.
+    """
+    chromium = os.environ.get("TOONGEO_CHROMIUM") or shutil.which("chromium")
+    missing = None
+    if chromium is None:
+        missing = "chromium is not installed"
+    elif not (WEB / "node_modules" / "playwright-core").is_dir():
+        missing = "run `npm ci --prefix tests/web` first"
+    if missing and os.environ.get("TOONGEO_REQUIRE_WEB") == "1":
+        pytest.fail(missing)
+    if missing:
+        pytest.skip(missing)
+
+    def run(url, steps):
+        folder = tmp_path_factory.mktemp("browse")
+        (folder / "steps.json").write_text(json.dumps(steps))
+        return node("browse.mjs", url, folder / "steps.json", folder), folder
+
+    return run

@@ -10,8 +10,9 @@ The stages, in the order in which :func:`make_avatar` calls them:
    that meet and do not cross, teeth that stay behind them.
 6. :func:`fit_eyes`, :func:`close_lids`, :func:`clear_lids` - eyeballs, and lids that close over them.
 7. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
-8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .vrm, .usdz, .obj, .ply);
+8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .vrm, .usdz, .html, .obj, .ply);
    :func:`load_avatar` reads a .glb back.
+9. :class:`LandmarkDriver`, :class:`ArkitDriver` - weights of another face's performance, for any avatar.
 
 For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space.
 
@@ -42,6 +43,11 @@ __getattr__, __dir__, __all__ = attach(
         "LaplacianAligner": "geometry",
         "deformation_transfer": "geometry",
         "DeformationTransfer": "geometry",
+        "ArkitDriver": "driving",
+        "LandmarkDriver": "driving",
+        "Take": "driving",
+        "send_weights": "driving",
+        "ExpressionDriver": "protocols",
         "Coefficients": "protocols",
         "fit_3dmm": "pipeline",
         "RidgeRegressor": "pipeline",

@@ -9,6 +9,10 @@ from toongeo.caricature import caricature_surface as caricature_surface
 from toongeo.caricature import exaggerate as exaggerate
 from toongeo.caricature import face_space as face_space
 from toongeo.caricature import fit_caricature as fit_caricature
+from toongeo.driving import ArkitDriver as ArkitDriver
+from toongeo.driving import LandmarkDriver as LandmarkDriver
+from toongeo.driving import Take as Take
+from toongeo.driving import send_weights as send_weights
 from toongeo.geometry import DeformationTransfer as DeformationTransfer
 from toongeo.geometry import LaplacianAligner as LaplacianAligner
 from toongeo.geometry import deformation_transfer as deformation_transfer
@@ -51,6 +55,7 @@ from toongeo.pipeline import snap_eyes as snap_eyes
 from toongeo.pipeline import texture_coordinates as texture_coordinates
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
 from toongeo.protocols import Coefficients as Coefficients
+from toongeo.protocols import ExpressionDriver as ExpressionDriver
 from toongeo.protocols import FaceLabel as FaceLabel
 from toongeo.protocols import FaceParse as FaceParse
 from toongeo.render import PerspectiveCamera as PerspectiveCamera

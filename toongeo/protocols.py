@@ -5,7 +5,7 @@ Each Protocol is satisfied by shape, not by inheritance: any object or function 
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -186,4 +186,17 @@ class FittedFace(Protocol):
 
     def region(self, name: str) -> np.ndarray:
         """(n,) bool: which vertices belong to the region."""
+        ...
+
+
+class ExpressionDriver(Protocol):
+    """Reads a performance - landmarks, blend shapes of a phone, or pictures, by a network say - as weights."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names (w,) of expressions of the rig and directions of gaze."""
+        ...
+
+    def frames(self, recording: Any, fps: float) -> np.ndarray:
+        """Weights (f, w) of a recording with f frames, so many a second."""
         ...

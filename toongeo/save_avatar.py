@@ -17,6 +17,9 @@ from toongeo.io import (
     Scene,
     SceneAnimation,
     VrmMeta,
+    atomic_write,
+    encode_glb,
+    page_html,
     split_seams,
     write_glb,
     write_obj,
@@ -26,7 +29,7 @@ from toongeo.io import (
     write_vrm,
 )
 from toongeo.io.write_usdz import usd_modules
-from toongeo.model.expression_schemes import SCHEMES
+from toongeo.model.expression_schemes import PRESETS, SCHEMES
 from toongeo.named_shapes import PLAYER_MESHES, PLAYER_ROOT, Names, named_shapes, renamed_scene
 from toongeo.pipeline import Rig
 from toongeo.pipeline.rig.gaze import SIDEWAYS, UPDOWN
@@ -35,6 +38,7 @@ from toongeo.render import sample_image, uv_to_px
 if TYPE_CHECKING:
     from toongeo.avatar import Avatar
 
+Weights = Mapping[str, float]
 Texture = Literal["png", "jpeg"] | None
 Animation = Literal["demo"] | None | tuple[Any, Any]
 EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
@@ -194,12 +198,40 @@ def _write_usdz(path: Path, avatar: Avatar, *, crop: Crop = "head", names: Names
     write_usdz(path, avatar_scene(avatar, crop=crop, shapes=shapes), tolerance_mm=EXACT_MM)
 
 
+def _write_html(
+    path: Path,
+    avatar: Avatar,
+    *,
+    crop: Crop = "head",
+    quantize: bool = True,
+    texture: Texture = "png",
+    animation: Animation = "demo",
+    title: str | None = None,
+) -> None:
+    scene = avatar_scene(
+        avatar,
+        crop=crop,
+        animation=_animation(avatar.rig, animation),
+        textured=_check_texture(texture) is not None,
+    )
+    tolerance = COARSE_MM if quantize else EXACT_MM
+    glb = encode_glb(scene, tolerance_mm=tolerance, quantize=quantize, picture=texture or "png")
+    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets())
+    atomic_write({path: page.encode("utf-8")})
+
+
+def page_presets() -> dict[str, Weights]:
+    """Whole expressions for the buttons of a page: no shapes of speech, no parts of faces."""
+    return {name: dict(weights) for name, weights in PRESETS.items() if weights and not name.startswith("viseme_")}
+
+
 WRITERS: dict[str, Callable[..., None]] = {
     ".glb": _write_glb,
     ".obj": _write_obj,
     ".ply": _write_ply,
     ".vrm": _write_vrm,
     ".usdz": _write_usdz,
+    ".html": _write_html,
     "obj-sequence": _write_obj_sequence,
 }
 SUFFIXES = tuple(name for name in WRITERS if name.startswith("."))

@@ -57,8 +57,37 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
+    _add_drive(commands)
+    _add_serve(commands)
+    view = commands.add_parser("view", help="show an avatar in the browser")
+    view.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb")
+    view.add_argument("--no-open", action="store_true", help="only print where the page is")
+    view.set_defaults(run=_view)
     add_bench(commands)
     return parser
+
+
+def _add_drive(commands: Any) -> None:
+    drive = commands.add_parser("drive", help="play a performance on an avatar, as a video or an animated GLB")
+    drive.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
+    source = drive.add_mutually_exclusive_group(required=True)
+    source.add_argument("--weights", type=Path, metavar="TAKE", help="Live Link Face .csv, or .npy (frames, 52 or 54)")
+    source.add_argument("--landmarks", type=Path, metavar="TAKE", help=".npy (frames, 68, 2) px, the first neutral")
+    drive.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4 or .glb")
+    drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
+    drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
+    drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
+    drive.set_defaults(run=_drive)
+
+
+def _add_serve(commands: Any) -> None:
+    serve = commands.add_parser("serve", help="show an avatar that moves while weights come, on this computer only")
+    serve.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb")
+    serve.add_argument("--weights", type=Path, metavar="TAKE", help="play this take: .csv or .npy as for drive")
+    serve.add_argument("--loop", action="store_true", help="play it again and again")
+    serve.add_argument("--port", type=int, default=0, metavar="N", help="default: a free one")
+    serve.add_argument("--no-open", action="store_true", help="only print the addresses")
+    serve.set_defaults(run=_serve)
 
 
 # The commands import what they need when they run, so that `toongeo --help` answers at once.
@@ -100,3 +129,29 @@ def _demo(options: argparse.Namespace) -> None:
     from toongeo.app.demo import demo
 
     demo(options.output)
+
+
+def _drive(options: argparse.Namespace) -> None:
+    from toongeo.app.drive import drive
+
+    drive(
+        options.avatar,
+        options.output,
+        weights=options.weights,
+        landmarks=options.landmarks,
+        size=options.size,
+        fps=options.fps,
+        take_fps=options.take_fps,
+    )
+
+
+def _serve(options: argparse.Namespace) -> None:
+    from toongeo.app.serve import serve
+
+    serve(options.avatar, weights=options.weights, port=options.port, loop=options.loop, show=not options.no_open)
+
+
+def _view(options: argparse.Namespace) -> None:
+    from toongeo.app.view import view
+
+    view(options.avatar, show=not options.no_open)

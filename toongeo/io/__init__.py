@@ -11,6 +11,7 @@ from toongeo.io.encode_glb import encode_glb
 from toongeo.io.encode_image import encode_image
 from toongeo.io.glb_scene import glb_scene
 from toongeo.io.landmark_array import landmark_array
+from toongeo.io.page_html import page_html
 from toongeo.io.read_glb import GlbDocument, read_glb
 from toongeo.io.read_image import read_image
 from toongeo.io.read_landmarks import read_landmarks
@@ -41,6 +42,7 @@ __all__ = [
     "encode_image",
     "glb_scene",
     "landmark_array",
+    "page_html",
     "read_glb",
     "read_image",
     "read_landmarks",

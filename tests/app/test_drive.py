@@ -1,0 +1,187 @@
+"""A take on an avatar: as a video that plays back, as a GLB that three.js plays."""
+
+import csv
+import json
+import os
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.driving.conftest import film
+from toongeo.app.cli import main
+from toongeo.app.read_take import read_take
+from toongeo.app.write_video import write_video
+from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
+
+LIVE_LINK = tuple(SCHEMES["live_link"])
+
+
+@pytest.fixture(scope="module")
+def glb(avatar, tmp_path_factory):
+    path = tmp_path_factory.mktemp("drive") / "face.glb"
+    avatar.save(path)
+    return path
+
+
+@pytest.fixture
+def take(tmp_path):
+    """Half a second in which the jaw opens, at 30 frames a second."""
+    path = tmp_path / "take.csv"
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["Timecode", "BlendshapeCount", *LIVE_LINK])
+        for i in range(16):
+            code = f"10:00:{(i + 15) // 30:02d}:{(i + 15) % 30:02d}.000"
+            writer.writerow([code, 61, *(i / 15 if name == "JawOpen" else 0.0 for name in LIVE_LINK)])
+    return path
+
+
+def played(path):
+    video = cv2.VideoCapture(str(path))
+    frames = []
+    while (read := video.read())[0]:
+        frames.append(read[1][:, :, ::-1])
+    return np.array(frames), video.get(cv2.CAP_PROP_FPS)
+
+
+def test_a_video_shows_the_take(glb, take, avatar, tmp_path, capsys):
+    out = tmp_path / "take.mp4"
+    assert main(["drive", str(glb), "--weights", str(take), "-o", str(out), "--size", "128", "--fps", "10"]) == 0
+    frames, fps = played(out)
+    assert frames.shape == (6, 128, 128, 3) and fps == 10
+    for k, frame in enumerate(frames):
+        wanted = avatar.render({"jawOpen": k / 5}, size=128).astype(float)
+        errors = [np.abs(frame - avatar.render({"jawOpen": j / 5}, size=128).astype(float)).mean() for j in range(6)]
+        assert int(np.argmin(errors)) == k and np.abs(frame - wanted).mean() < 8
+    assert f"wrote {out}: 6 frames, 0.50 s" in capsys.readouterr().out
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["take.csv", "take.mp4"]
+
+
+def test_a_glb_plays_the_take(glb, take, tmp_path, node):
+    out = tmp_path / "take.glb"
+    assert main(["drive", str(glb), "--weights", str(take), "-o", str(out)]) == 0
+    (verdict,) = node("validate.mjs", out)
+    assert verdict["errors"] == verdict["warnings"] == 0
+    (report,) = node("load.mjs", out)
+    (clip,) = report["animations"]
+    assert clip["duration"] == pytest.approx(0.5, abs=1e-5)
+    head = next(mesh for mesh in report["meshes"] if mesh["name"] == "head")
+    halfway = clip["halfway"][report["meshes"].index(head)]
+    assert halfway[head["targets"].index("jawOpen")] == pytest.approx(0.5, abs=1e-4)
+    assert sum(map(abs, halfway)) == pytest.approx(0.5, abs=1e-4)
+
+
+def test_landmarks_of_another_face_drive(glb, avatar, tmp_path):
+    weights = np.zeros((12, 46))
+    weights[:, avatar.names.index("jawOpen")] = np.linspace(0, 0.8, 12)
+    np.save(tmp_path / "points.npy", film(avatar, weights))
+    out = tmp_path / "take.mp4"
+    arguments = ["--landmarks", str(tmp_path / "points.npy"), "-o", str(out), "--size", "64"]
+    assert main(["drive", str(glb), *arguments]) == 0
+    frames, _ = played(out)
+    last = avatar.render({"jawOpen": 0.8}, size=64).astype(float)
+    assert len(frames) == 12
+    assert np.abs(frames[-1] - last).mean() < np.abs(frames[0] - last).mean()
+
+
+def test_arrays_of_weights(tmp_path):
+    own, arkit = tmp_path / "own.npy", tmp_path / "arkit.npy"
+    np.save(own, np.eye(54)[:3])
+    np.save(arkit, np.eye(52)[:3])
+    np.testing.assert_array_equal(read_take(own).weights, np.eye(54)[:3])
+    wanted = [EXPRESSIONS.index(name) for name in list(SCHEMES["arkit"])[:3]]
+    np.testing.assert_array_equal(read_take(arkit, 10).weights, np.eye(54)[wanted])
+    np.testing.assert_allclose(read_take(arkit, 10).times, [0, 0.1, 0.2])
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"--weights": "none.csv"}, "none.csv"),
+        ({"--weights": "broken.csv"}, "51 of 52 columns are missing"),
+        ({"--weights": "broken.npy"}, "broken.npy: expected an array of numbers"),
+        ({"--weights": "take.txt"}, "weights: expected a .csv or .npy file"),
+        ({"-o": "take.avi"}, "output: expected a name that ends in .mp4 or .glb"),
+        ({"-o": "no/take.mp4"}, "output: no folder"),
+        ({"-o": "folder.mp4"}, "it is a folder"),
+        ({"-o": "folder.glb"}, "folder.glb"),
+        ({"--size": "33"}, "size: expected an even number of px"),
+        ({"--fps": "0"}, "fps: expected a rate > 0"),
+        ({"--fps": "500"}, "fps: expected 1 to 240"),
+        ({"avatar": "none.glb"}, "none.glb"),
+        ({"avatar": "cut.glb"}, "cut.glb is damaged or none"),
+    ],
+)
+def test_bad_input_is_one_line_and_no_file(glb, take, tmp_path, monkeypatch, capsys, change, message):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "broken.csv").write_text("JawOpen\n0\n")
+    (tmp_path / "broken.npy").write_bytes(b"\x93NUMPY broken")
+    (tmp_path / "cut.glb").write_bytes(glb.read_bytes()[:5000])
+    for name in ("folder.mp4", "folder.glb"):
+        (tmp_path / name).mkdir()
+    before = sorted(os.listdir())
+    options = {"--weights": "take.csv", "-o": "out.mp4", "--size": "32", **change}
+    avatar = options.pop("avatar", str(glb))
+    assert main(["drive", avatar, *(part for pair in options.items() for part in pair)]) == 2
+    errors = [line for line in capsys.readouterr().err.splitlines() if line.startswith("toongeo: ")]
+    assert len(errors) == 1 and message in errors[0]
+    assert sorted(os.listdir()) == before and not os.listdir("folder.mp4")
+
+
+def test_an_interrupted_video_leaves_the_old_one(tmp_path):
+    path = tmp_path / "a.mp4"
+    path.write_bytes(b"old")
+
+    def frames():
+        yield np.zeros((32, 32, 3), np.uint8)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_video(path, frames(), 32, 30)
+    with pytest.raises(ValueError, match=r"frames: expected \(32, 32, 3\) uint8, got \(16, 16, 3\) float64"):
+        write_video(path, iter([np.zeros((16, 16, 3))]), 32, 30)
+    assert path.read_bytes() == b"old" and os.listdir(tmp_path) == ["a.mp4"]
+    with pytest.raises(OSError, match="cannot write"):
+        write_video(tmp_path / "none" / "a.mp4", frames(), 32, 30)
+
+
+def test_an_opencv_without_encoder(tmp_path, monkeypatch):
+    monkeypatch.setattr(cv2.VideoWriter, "isOpened", lambda self: False, raising=False)
+    with pytest.raises(OSError, match="OpenCV has no MPEG-4 encoder here"):
+        write_video(tmp_path / "a.mp4", iter([]), 32, 30)
+    monkeypatch.undo()
+    with pytest.raises(OSError, match="0 of 0 frames are in the file"):
+        write_video(tmp_path / "a.mp4", iter([]), 32, 30)
+    assert os.listdir(tmp_path) == []
+
+
+def test_view_writes_a_page(glb, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    assert main(["view", str(glb), "--no-open"]) == 0
+    page = capsys.readouterr().out.strip()
+    content = Path(page).read_text(encoding="utf-8")
+    assert page.startswith(str(tmp_path)) and "<title>face</title>" in content and opened == []
+    settings = json.loads(content.split('id="settings">')[1].split("</script>")[0])
+    assert settings["live"] is None and settings["presets"]["smile"]["mouthSmileLeft"] > 0.5
+    assert main(["view", str(glb)]) == 0
+    assert len(opened) == 1 and opened[0].startswith("file://")
+
+
+def test_what_cannot_be_viewed_or_served(glb, tmp_path, capsys):
+    from toongeo.io import Scene, SceneMesh, write_glb
+
+    still = tmp_path / "still.glb"
+    write_glb(still, Scene((SceneMesh("still", np.eye(3), np.array([[0, 1, 2]])),)))
+    (tmp_path / "cut.glb").write_bytes(glb.read_bytes()[:-9])
+    for command in ("view", "serve"):
+        for name, message in (
+            ("none.glb", "none.glb"),
+            ("cut.glb", "cut.glb is damaged or none"),
+            ("still.glb", "expected an avatar, got a GLB without named morph targets"),
+        ):
+            assert main([command, str(tmp_path / name), "--no-open"]) == 2
+            assert message in capsys.readouterr().err

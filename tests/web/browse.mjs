@@ -1,0 +1,57 @@
+// node browse.mjs URL STEPS.json FOLDER: open a page in headless Chromium, do the steps, tell what happened as JSON.
+// A step is one of {shot: file}, {slider: name, value}, {click: selector}, {key: name, on: selector}, {run: script},
+// {download: selector, file}, {wait: script}. Printed: results of the runs, console messages, requests.
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { chromium } from 'playwright-core';
+
+const [url, steps, folder] = process.argv.slice(2);
+const quiet = ['--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const browser = await chromium.launch({
+  executablePath: process.env.TOONGEO_CHROMIUM ?? '/usr/bin/chromium',
+  args: ['--no-sandbox', '--disable-quic', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', ...quiet],
+});
+const context = await browser.newContext({ viewport: { width: 900, height: 620 }, acceptDownloads: true });
+const page = await context.newPage();
+const report = { console: [], requests: [], results: [] };
+page.on('console', (message) => report.console.push(`${message.type()}: ${message.text()}`));
+page.on('pageerror', (error) => report.console.push(`error: ${error.message}`));
+page.on('request', (request) => report.requests.push(request.url().slice(0, 200)));
+
+// Two frames: one that draws, and one that shows what was drawn.
+const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+async function act(step) {
+  if (step.shot) {
+    await settle();
+    await page.locator('#view').screenshot({ path: join(folder, step.shot), animations: 'disabled' });
+  } else if (step.slider) {
+    await page.evaluate(([name, value]) => {
+      const input = document.querySelector(`input[name="${CSS.escape(name)}"]`);
+      input.closest('details').open = true;
+      input.value = value;
+      input.dispatchEvent(new Event('input', { bubbles: true }));
+    }, [step.slider, step.value]);
+  } else if (step.click) {
+    await page.locator(step.click).click();
+  } else if (step.key) {
+    await page.locator(step.on).press(step.key);
+  } else if (step.download) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator(step.download).click()]);
+    await download.saveAs(join(folder, step.file));
+    report.results.push(download.suggestedFilename());
+  } else if (step.wait) {
+    // Not waitForFunction, which evaluates in the page, whose policy forbids it.
+    while (!(await page.evaluate(step.wait))) await page.waitForTimeout(30);
+  } else {
+    report.results.push(await page.evaluate(step.run));
+  }
+}
+
+try {
+  await page.goto(url);
+  for (const step of JSON.parse(readFileSync(steps, 'utf8'))) await act(step);
+} finally {
+  await browser.close();
+}
+console.log(JSON.stringify(report));

@@ -1,0 +1,205 @@
+"""Expression weights from the landmarks of another face."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo.driving.landmark_frames import landmark_frames
+from toongeo.driving.landmark_pose import FEWEST, LandmarkPose, landmark_pose
+from toongeo.driving.landmark_rig import LandmarkRig
+from toongeo.driving.one_euro_filter import OneEuroFilter
+from toongeo.geometry.one_thread import one_thread
+from toongeo.model.expression_schemes import EXPRESSIONS
+from toongeo.pipeline import Rig
+
+if TYPE_CHECKING:
+    from toongeo.avatar import Avatar
+
+__all__ = ["LandmarkDriver", "LiveLandmarks"]
+
+Floats = NDArray[np.float64]
+
+FIRST_NOISE = 1e-3  # of the face's width: what is assumed before anything is known
+LEAST_NOISE = 1e-5  # so that landmarks without noise are explained exactly
+CAUTION = 2.0  # how much more noise the weights assume than there is: quiet weights are worth a little bias
+REMEMBERED = 90  # frames from which live noise is told
+UNKNOWNS = 40  # about as many of the 136 coordinates are explained by weights and pose, whatever they are
+
+
+class LandmarkDriver:
+    """Reads the expression off the landmarks of a performer, as an :class:`toongeo.ExpressionDriver`.
+
+    Each frame is explained by the performer's own face: its pose in the picture (scaled orthographic) and its weights,
+    by least squares within bounds. Weights, unlike distances, mean the same on every face, so they drive any avatar.
+    The landmarks are smoothed in the frame of the head by a One-Euro filter, so that turns of the head are not.
+
+    Parameters
+    ----------
+    performer : Avatar, LandmarkRig, (68, 2) px landmarks of a neutral frame, or None
+        Whose landmarks will be seen. The better it is known, the better the weights: an avatar of the performer knows
+        most; of a neutral frame a face is fitted; with None the face is found from the sequence itself.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from toongeo.model import default_model
+    >>> from toongeo.driving import LandmarkDriver
+    >>> model = default_model()
+    >>> neutral = model.mean[model.landmarks, :2] * [1, -1]
+    >>> smile = neutral + 0.5 * model.expression[model.expression_index("jawOpen"), model.landmarks, :2] * [1, -1]
+    >>> driver = LandmarkDriver(neutral)
+    >>> weights = driver.frames(np.stack([neutral, smile]))
+    >>> driver.names[weights[1].argmax()]
+    'jawOpen'
+    """
+
+    names = EXPRESSIONS
+
+    def __init__(self, performer: Avatar | LandmarkRig | ArrayLike | None = None) -> None:
+        self._rig: LandmarkRig | None
+        if performer is None or isinstance(performer, LandmarkRig):
+            self._rig = performer
+        elif isinstance(rig := getattr(performer, "rig", None), Rig):
+            self._rig = LandmarkRig.of_rig(rig, performer.face.landmark_vertices)  # type: ignore[union-attr]
+        else:
+            self._rig = LandmarkRig.of_neutral(landmark_frames(performer, "performer")[0])
+
+    def frames(self, recording: ArrayLike, fps: float = 30.0) -> Floats:
+        """Weights (f, 54) in [0, 1] of the expressions ``names`` for a whole sequence.
+
+        What comes after a frame is known too, so it is smoothed without delay: once forwards, once backwards. Gaze,
+        which the landmarks do not show, is 0.
+
+        Parameters
+        ----------
+        recording : (f, 68, 2) px
+            iBUG-68 landmarks, x right, y down; NaN rows are missing, and a frame with fewer than 12 points repeats
+            what was there before.
+        fps : float
+            Frames a second.
+
+        Raises
+        ------
+        ValueError
+            If the shape is another, the rate is not positive, or no frame has enough landmarks.
+        """
+        sequence = landmark_frames(recording)
+        if not (np.isfinite(fps) and fps > 0):
+            raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
+        with one_thread():
+            rig = LandmarkRig.of_frames(sequence) if self._rig is None else self._rig
+            poses = _poses(rig, sequence)
+            errors = np.array([pose.errors(x, rig) for pose, x in zip(poses, sequence, strict=True)])
+            noise, doubt = noise_of(errors), doubt_of(errors)
+            moved = np.array([pose.head_frame(x, rig) for pose, x in zip(poses, sequence, strict=True)])
+            moved = _smoothed(moved, noise * rig.width, fps)
+            weights, rows = np.zeros(len(rig.names)), []
+            for pose, there in zip(poses, moved, strict=True):
+                weights = landmark_pose(rig, pose.picture(there, rig), weights, doubt).weights
+                rows.append(weights)
+        return _all_weights(np.array(rows), rig.names)
+
+    def live(self) -> LiveLandmarks:
+        """For frames that come one by one.
+
+        Raises
+        ------
+        ValueError
+            If the performer is not known: their face cannot be found from frames that have not come yet.
+        """
+        if self._rig is None:
+            raise ValueError("performer: expected an avatar or a neutral frame for live driving, got None")
+        return LiveLandmarks(self._rig)
+
+
+class LiveLandmarks:
+    """Weights of one frame after the other; made by :meth:`LandmarkDriver.live`.
+
+    Smooths by what has come so far, so it follows a little later than :meth:`LandmarkDriver.frames`.
+    """
+
+    def __init__(self, rig: LandmarkRig) -> None:
+        self._rig = rig
+        self._weights = [np.zeros(len(rig.names)), np.zeros(len(rig.names))]  # of the frame as it is, and smoothed
+        self._filter = OneEuroFilter(FIRST_NOISE * rig.width)
+        self._errors: deque[Floats] = deque(maxlen=REMEMBERED)
+
+    def __call__(self, landmarks: ArrayLike, time: float) -> Floats:
+        """Weights (54,) in [0, 1] of landmarks (68, 2) px at a time in s.
+
+        A frame with fewer than 12 landmarks repeats the last weights.
+
+        Raises
+        ------
+        ValueError
+            If the landmarks have another shape or are infinite.
+        """
+        rig, pixels = self._rig, landmark_frames(landmarks)[0]
+        if np.isfinite(pixels).all(axis=1).sum() >= FEWEST:
+            with one_thread():
+                pose = landmark_pose(rig, pixels, self._weights[0], FIRST_NOISE)
+                self._errors.append(pose.errors(pixels, rig))
+                noise = noise_of(np.array(self._errors))
+                self._filter.noise = noise * rig.width
+                there = self._filter(pose.head_frame(pixels, rig), time)
+                smooth = landmark_pose(rig, pose.picture(there, rig), self._weights[1], CAUTION * noise)
+            self._weights = [pose.weights, smooth.weights]
+        return _all_weights(self._weights[1][None], rig.names)[0]
+
+
+def noise_of(errors: Floats) -> float:
+    """Standard deviation of a coordinate's noise from errors (f, 68, 2) of a sequence, in widths of the face.
+
+    What the face explains badly changes slowly, noise does not: second differences in time show the noise alone. The
+    median tells it although some frames jump.
+    """
+    if len(errors) < 3:
+        return FIRST_NOISE
+    jerk = np.abs(np.diff(errors, 2, axis=0))
+    if not np.isfinite(jerk).any():
+        return FIRST_NOISE
+    normal = np.sqrt(6) * 0.6745  # of the median of |x - 2 y + z| for unit normal x, y, z
+    explained = np.sqrt(1 - UNKNOWNS / 136)  # part of the noise that weights and pose have taken up
+    return max(float(np.nanmedian(jerk)) / normal / explained, LEAST_NOISE)
+
+
+def doubt_of(errors: Floats) -> float:
+    """How far to mistrust landmarks with errors (f, 68, 2): what is unexplained is noise, or a face not quite known."""
+    unexplained = float(np.nanmedian(np.abs(errors))) / 0.6745 / np.sqrt(1 - UNKNOWNS / 136)
+    return max(CAUTION * unexplained, LEAST_NOISE)
+
+
+def _poses(rig: LandmarkRig, sequence: Floats) -> list[LandmarkPose]:
+    """Of every frame by itself; of one with too few landmarks, that of the frame before it."""
+    seen = np.isfinite(sequence).all(axis=2).sum(axis=1) >= FEWEST
+    if not seen.any():
+        raise ValueError(f"recording: expected a frame with at least {FEWEST} landmarks, got none")
+    weights, poses = np.zeros(len(rig.names)), {}
+    for i in np.flatnonzero(seen):
+        poses[i] = landmark_pose(rig, sequence[i], weights, FIRST_NOISE)
+        weights = poses[i].weights
+    known = np.maximum.accumulate(np.where(seen, np.arange(len(seen)), seen.argmax()))
+    return [poses[i] for i in known]
+
+
+def _smoothed(moved: Floats, noise: float, fps: float) -> Floats:
+    """The mean of a filter that runs forwards and one that runs backwards; each begins where the other ended."""
+
+    def run(points: Floats, start: Floats | None) -> Floats:
+        smooth = OneEuroFilter(noise, start=start)
+        return np.array([smooth(there, i / fps) for i, there in enumerate(points)])
+
+    forwards = run(moved, None)
+    backwards = run(moved[::-1], forwards[-1])[::-1]
+    return (run(moved, backwards[0]) + backwards) / 2
+
+
+def _all_weights(weights: Floats, names: tuple[str, ...]) -> Floats:
+    """Weights (f, k) of a rig's expressions as (f, 54) of EXPRESSIONS."""
+    rows = np.zeros((len(weights), len(EXPRESSIONS)))
+    rows[:, [EXPRESSIONS.index(name) for name in names]] = weights
+    return rows

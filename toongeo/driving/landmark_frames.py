@@ -1,0 +1,35 @@
+"""Checked sequences of landmarks."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["landmark_frames"]
+
+
+def landmark_frames(recording: Any, name: str = "recording") -> NDArray[np.float64]:
+    """Landmarks (f, 68, 2) px as float64; those of one frame may come as (68, 2).
+
+    Raises
+    ------
+    ValueError
+        If they are not numbers, have another shape, or hold infinities; NaN means missing.
+
+    Examples
+    --------
+    >>> landmark_frames(np.zeros((68, 2))).shape
+    (1, 68, 2)
+    """
+    try:
+        frames = np.array(recording, np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected numbers (frames, 68, 2), got {type(recording).__name__}") from None
+    if frames.shape == (68, 2):
+        frames = frames[None]
+    if frames.ndim != 3 or frames.shape[1:] != (68, 2) or not len(frames):
+        raise ValueError(f"{name}: expected shape (frames, 68, 2), got {frames.shape}")
+    if np.isinf(frames).any():
+        raise ValueError(f"{name}: expected finite px, or NaN for missing points, got infinity")
+    frames[np.isnan(frames).any(axis=2)] = np.nan
+    return frames

@@ -1,0 +1,79 @@
+"""What a performer's landmarks can do: 68 points and how each expression moves them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo._read_only import read_only
+from toongeo.pipeline import Rig, align_face, build_rig, close_lids, fit_3dmm
+
+__all__ = ["LandmarkRig"]
+
+Floats = NDArray[np.float64]
+
+_SEVERAL = 6  # frames that a performer's face is found from when none is known to be neutral
+
+
+@dataclass(frozen=True, eq=False)
+class LandmarkRig:
+    """The landmarks of a rigged face.
+
+    Attributes
+    ----------
+    names : tuple of k expressions
+    neutral : (68, 3) float64, mm, model frame
+    deltas : (k, 68, 3) float64, mm
+        What each expression at weight 1 adds.
+    """
+
+    names: tuple[str, ...]
+    neutral: Floats
+    deltas: Floats
+
+    def __post_init__(self) -> None:
+        shapes = np.shape(self.neutral), np.shape(self.deltas)
+        if shapes != ((68, 3), (len(self.names), 68, 3)):
+            raise ValueError(f"neutral, deltas: expected (68, 3) and ({len(self.names)}, 68, 3), got {shapes}")
+        read_only(self, "neutral", "deltas")
+
+    @property
+    def width(self) -> float:
+        """Of the face from ear to ear, mm: the unit in which errors of landmarks are told."""
+        return float(np.ptp(self.neutral[:, 0]))
+
+    @classmethod
+    def of_rig(cls, rig: Rig, vertices: NDArray[np.integer]) -> LandmarkRig:
+        """Of a rigged face whose landmarks lie at vertices (68,)."""
+        return cls(rig.names, rig.neutral[vertices], rig.deltas[:, vertices].astype(np.float64))
+
+    @classmethod
+    def of_neutral(cls, landmarks: ArrayLike) -> LandmarkRig:
+        """Of a performer of whom a frame (68, 2) px without expression is known.
+
+        The frame is fitted and aligned as a picture would be, and the expressions of the template are transferred.
+        """
+        fit = fit_3dmm(None, landmarks)
+        face = align_face(fit, np.asarray(landmarks, np.float64))
+        return cls.of_rig(close_lids(face, build_rig(face)), face.landmark_vertices)
+
+    @classmethod
+    def of_frames(cls, frames: ArrayLike) -> LandmarkRig:
+        """Of a performer who is only known from a sequence (f, 68, 2) px, NaN where missing.
+
+        A few frames are fitted together: one identity, and an expression and a pose in each.
+        """
+        sequence = np.asarray(frames, np.float64)
+        there = np.isfinite(sequence).all(axis=2).sum(axis=1)
+        whole = np.flatnonzero(there == there.max())
+        chosen = whole[np.unique(np.linspace(0, len(whole) - 1, _SEVERAL).round().astype(int))]
+        fit = fit_3dmm([None] * len(chosen), list(sequence[chosen]))[0]
+        model, n = fit.model, fit.model.n_named
+        vertices = fit.landmark_vertices
+        return cls(
+            model.expression_names[:n],
+            model.vertices(fit.identity)[vertices],
+            model.expression[:n, vertices].astype(np.float64),
+        )

@@ -1,0 +1,67 @@
+"""A performance: weights over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo._read_only import read_only
+from toongeo.model.expression_schemes import EXPRESSIONS
+
+__all__ = ["Take"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """Weights of the 46 expressions and the eight gaze directions, frame by frame.
+
+    Attributes
+    ----------
+    times : (f,) float64, s
+        From 0, increasing.
+    weights : (f, 54) float64
+        Columns as in ``toongeo.model.expression_schemes.EXPRESSIONS``.
+    head : (f, 3) float64, radians, or None
+        Yaw, pitch and roll of the head as the recording has them, without a promise about their signs.
+    """
+
+    times: Floats
+    weights: Floats
+    head: Floats | None = None
+
+    def __post_init__(self) -> None:
+        f = len(self.times)
+        if np.shape(self.weights) != (f, len(EXPRESSIONS)):
+            raise ValueError(f"weights: expected ({f}, {len(EXPRESSIONS)}), got {np.shape(self.weights)}")
+        if f == 0 or not np.isfinite(self.times).all() or (np.diff(self.times) <= 0).any():
+            raise ValueError("times: expected at least one frame, at increasing seconds")
+        if not np.isfinite(self.weights).all():
+            raise ValueError("weights: expected finite numbers, got NaN or infinity")
+        read_only(self, "times", "weights", "head")
+
+    @classmethod
+    def of_frames(cls, weights: Floats, fps: float) -> Take:
+        """Frames (f, 54) at a steady rate."""
+        if not (np.isfinite(fps) and fps > 0):
+            raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
+        return cls(np.arange(len(weights)) / fps, np.asarray(weights, np.float64))
+
+    @property
+    def seconds(self) -> float:
+        """From the first frame to the last."""
+        return float(self.times[-1] - self.times[0])
+
+    def resampled(self, fps: float) -> Take:
+        """The same at a steady rate; linear in between."""
+        if not (np.isfinite(fps) and fps > 0):
+            raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
+        times = np.arange(int(self.seconds * fps + 1e-6) + 1) / fps
+
+        def at(values: Floats) -> Floats:
+            return np.column_stack([np.interp(times, self.times - self.times[0], column) for column in values.T])
+
+        return Take(times, at(self.weights), None if self.head is None else at(self.head))

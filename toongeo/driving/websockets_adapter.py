@@ -1,0 +1,33 @@
+"""The package ``websockets``, if it is installed."""
+
+from types import ModuleType, SimpleNamespace
+
+__all__ = ["load_websockets"]
+
+
+def load_websockets() -> SimpleNamespace:
+    """``serve``, ``broadcast``, ``connect`` and the errors ``ConnectionClosed`` and ``InvalidStatus``.
+
+    Raises
+    ------
+    ImportError
+        If it is not installed; says which extra has it.
+    """
+    server, client, errors = _modules()
+    return SimpleNamespace(
+        serve=server.serve,
+        broadcast=server.broadcast,
+        connect=client.connect,
+        ConnectionClosed=errors.ConnectionClosed,
+        InvalidStatus=errors.InvalidStatus,
+    )
+
+
+def _modules() -> tuple[ModuleType, ModuleType, ModuleType]:
+    try:
+        import websockets.asyncio.server
+        import websockets.exceptions
+        import websockets.sync.client
+    except ImportError as error:
+        raise ImportError('live driving needs websockets: pip install "toongeo[serve]"') from error
+    return websockets.asyncio.server, websockets.sync.client, websockets.exceptions
