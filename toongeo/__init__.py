@@ -11,6 +11,7 @@ The stages, in the order in which :func:`make_avatar` calls them:
 7. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
 8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
 
+A head that was modelled elsewhere gets the expressions from :func:`rig_mesh` (by :func:`nonrigid_register`).
 For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space.
 
 Every name is imported when it is first used, so ``import toongeo`` itself costs almost nothing.
@@ -37,6 +38,8 @@ __getattr__, __dir__, __all__ = attach(
         "LaplacianAligner": "geometry",
         "deformation_transfer": "geometry",
         "DeformationTransfer": "geometry",
+        "nonrigid_register": "geometry",
+        "RegisteredMesh": "geometry",
         "Coefficients": "protocols",
         "fit_3dmm": "pipeline",
         "RidgeRegressor": "pipeline",
@@ -61,6 +64,7 @@ __getattr__, __dir__, __all__ = attach(
         "bake_eyes": "pipeline",
         "build_rig": "pipeline",
         "Rig": "pipeline",
+        "rig_mesh": "pipeline",
         "fit_eyes": "pipeline",
         "close_lids": "pipeline",
         "clear_lids": "pipeline",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
@@ -81,6 +83,9 @@ class DeformationTransfer:
         The target at rest, without degenerate triangles: they have no gradient.
     pinned : (p,) int, optional
         Vertices held exactly where the target has them, in every transfer.
+    weights : {"uniform", "area"}
+        Of the triangles in the energy. The paper counts them alike, so that where a mesh is fine it is stiff; by area the
+        result depends on the surfaces alone, which matters where source and target mesh differ much in density.
 
     Raises
     ------
@@ -101,8 +106,16 @@ class DeformationTransfer:
     """
 
     def __init__(
-        self, V_source: ArrayLike, F: ArrayLike, V_target: ArrayLike, *, pinned: ArrayLike | None = None
+        self,
+        V_source: ArrayLike,
+        F: ArrayLike,
+        V_target: ArrayLike,
+        *,
+        pinned: ArrayLike | None = None,
+        weights: Literal["uniform", "area"] = "uniform",
     ) -> None:
+        if weights not in ("uniform", "area"):
+            raise ValueError(f"weights: expected 'uniform' or 'area', got {weights!r}")
         self._source, faces = validate_mesh(V_source, F, names=("V_source", "F"), nondegenerate=True)
         self._target, faces = validate_mesh(V_target, faces, names=("V_target", "F"), nondegenerate=True)
         n = len(self._source)
@@ -111,7 +124,9 @@ class DeformationTransfer:
         self._corners = np.ascontiguousarray(faces.T)
         self._rest_normals = _fourth_edges(self._source, self._corners)
 
-        stiffness, self._from_vertices, self._from_normals = _operators(self._source, self._target, self._corners)
+        stiffness, self._from_vertices, self._from_normals = _operators(
+            self._source, self._target, self._corners, by_area=weights == "area"
+        )
         pins = _checked_pins(pinned, n)
         self._component = components(faces, n)
         lowest = np.unique(self._component, return_index=True)[1]
@@ -191,7 +206,7 @@ def _dual_edges(
 
 
 def _operators(
-    source: NDArray[np.float64], target: NDArray[np.float64], corners: NDArray[np.int64]
+    source: NDArray[np.float64], target: NDArray[np.float64], corners: NDArray[np.int64], *, by_area: bool = False
 ) -> tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]:
     """``K`` (n, n), ``B`` (n, n), ``N`` (n, m) with ``K x = B v + N (n / sqrt|n|)`` for a deformed source v.
 
@@ -203,14 +218,16 @@ def _operators(
     n, m = len(source), corners.shape[1]
     g1, g2, _ = _dual_edges(target, corners)
     gradients = (-g1 - g2, g1, g2)
+    weight = 1 / np.sqrt((cross(g1, g2) ** 2).sum(axis=0)) if by_area else 1.0  # of the triangle: twice its area
+    weighted = tuple(weight * g for g in gradients)
     h1, h2, h3 = _dual_edges(source, corners)
     hats = (-h1 - h2, h1, h2)
 
     rows = np.concatenate([corners[a] for a in range(3) for _ in range(3)])
     columns = np.concatenate([corners[b] for _ in range(3) for b in range(3)])
-    stiffness = np.concatenate([(ga * gb).sum(axis=0) for ga in gradients for gb in gradients])
-    mixed = np.concatenate([(ga * hb).sum(axis=0) for ga in gradients for hb in hats])
-    tilt = np.concatenate([(ga * h3).sum(axis=0) for ga in gradients])
+    stiffness = np.concatenate([(ga * gb).sum(axis=0) for ga in weighted for gb in gradients])
+    mixed = np.concatenate([(ga * hb).sum(axis=0) for ga in weighted for hb in hats])
+    tilt = np.concatenate([(ga * h3).sum(axis=0) for ga in weighted])
     K = sp.csr_matrix((stiffness, (rows, columns)), shape=(n, n))
     B = sp.csr_matrix((mixed, (rows, columns)), shape=(n, n))
     N = sp.csr_matrix((tilt, (corners.ravel(), np.tile(np.arange(m), 3))), shape=(n, m))

@@ -202,10 +202,11 @@ class _Shell:
         X = self.V + solve(factor_spd(stiff), self.pull @ (points - self.at @ self.V))
         step = 0.0
         for level in levels:
-            rest, smooth = X, level * self.energy + self.stay + self.landmarks
+            trust = level / levels[0]  # in the end surfaces decide: two annotators do not mark quite the same points
+            rest, smooth = X, level * self.energy + self.stay + trust * self.landmarks
             mean_pull = (1 + 2 * SLIDING) / 3
             factor = factor_spd(smooth + mean_pull * sp.diags_array(self.area * fitted))
-            to_points = self.pull @ (points - self.at @ rest)
+            to_points = trust * self.pull @ (points - self.at @ rest)
             for _ in range(iterations):
                 before = X
                 X = rest + self._displacement(surface, X, rest, fitted, smooth, factor, to_points)
