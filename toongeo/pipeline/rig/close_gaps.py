@@ -4,62 +4,71 @@ import numpy as np
 
 from toongeo.geometry import laplacian_align
 from toongeo.model import MorphableModel
-from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.align.rim_anchors import rim_path
 
-WEIGHT = 1e3  # of the anchors: they are met to about a hundredth of a millimetre
-OVERLAP = 0.02  # of an eye's width: how far an upper lid comes down over the lower one, at least
+OVERLAP = 0.5  # of the model's: how far an upper lid comes down over the lower one, at least
+EVEN = 1e-3  # of an eye's width: a gap that is left alone
 
 
 def close_gaps(model: MorphableModel, neutral: np.ndarray, closed: np.ndarray, side: str) -> np.ndarray:
-    """Bring the upper lid down where a blink has left it above the lower one.
+    """Bring the upper lid down where a blink has left it too high over the lower one.
 
-    Transfer keeps rotations and stretches, not contacts: eyes taller than the template's stay open. A lid that lies over
-    the other already, like a tile, is left as it is.
+    Transfer keeps rotations and stretches, not contacts: eyes taller than the model's stay open. On the model the upper lid
+    comes to lie over the lower one, like a tile; here it does so at least half as far, in widths of the eye. Where it does
+    already it is left as it is.
 
     Parameters
     ----------
     model : MorphableModel
+        With the expressions ``eyeBlinkLeft`` and ``eyeBlinkRight``.
     neutral, closed : (n, 3) float64, mm, model frame
-        The face at rest and with the eye of one side closed as far as the transfer closes it.
+        The face at rest, and with the eye of one side closed as far as the transfer closes it.
     side : {"left", "right"}
 
     Returns
     -------
     (n, 3) float64
-        ``closed``, corrected around that eye; itself if there is no gap.
+        ``closed``, with the skin around that eye corrected.
     """
+    blink = model.expression[model.expression_index(f"eyeBlink{side.capitalize()}")]
     upper, lower = (rim_path(model, f"lid_{lid}_{side}") for lid in ("upper", "lower"))
-    up = neutral[upper].mean(0) - neutral[lower].mean(0)
-    up /= np.linalg.norm(up)
-    # Both rims run from corner to corner: partners are at one place across the eye.
-    across = neutral[upper[-1]] - neutral[upper[0]]
-    width = float(np.linalg.norm(across))
-    across /= width
-    order = np.argsort(closed[lower] @ across, kind="stable")
-    place = closed[lower][order] @ across
-    landing = np.stack([np.interp(closed[upper] @ across, place, closed[lower][order, a]) for a in range(3)], axis=1)
-    height = (closed[upper] - landing) @ up + OVERLAP * width
-    inner = np.arange(len(upper))[1:-1]
-    short = inner[height[inner] > OVERLAP * width * 0.5]
-    if not len(short):
+    wanted, _, width = _heights(model.mean, model.mean + blink, upper, lower)
+    found, up, own_width = _heights(neutral, closed, upper, lower)
+    drop = np.maximum(found - OVERLAP * np.minimum(wanted, 0.0) * own_width / width, 0.0)
+    drop[[0, -1]] = 0.0  # the corners, which the lids share
+    if drop.max() <= EVEN * own_width:
         return closed
-    socket = f"socket_{side}"
-    around = model.region(f"eye_{side}") | (model.region(socket) if socket in model.regions else False)
+    around = model.region(f"eye_{side}").copy()
+    if f"socket_{side}" in model.regions:
+        around |= model.region(f"socket_{side}")
     patch = around[model.faces].all(1)
     used, local = np.unique(model.faces[patch], return_inverse=True)
     still = np.union1d(np.intersect1d(used, model.faces[~patch]), lower)
-    moving = np.setdiff1d(upper, still)
-    drop = np.zeros(len(closed))
-    drop[upper[inner]] = np.maximum(height[inner], 0.0)
-    targets = closed[moving] - drop[moving, None] * up
+    moving = ~np.isin(upper, still)
+    targets = closed[upper[moving]] - drop[moving, None] * up
     result = closed.copy()
-    shift = laplacian_align(
+    result[used] = laplacian_align(
         closed[used],
         local.reshape(-1, 3),
-        np.searchsorted(used, np.r_[still, moving]),
+        np.searchsorted(used, np.r_[still, upper[moving]]),
         np.vstack([closed[still], targets]),
-        weight=WEIGHT,
+        weight=np.inf,
     )
-    result[used] = shift
     return result
+
+
+def _heights(
+    neutral: np.ndarray, closed: np.ndarray, upper: np.ndarray, lower: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """How high (k,) each vertex of the upper rim stays above the lower one, the direction up, and the eye's width.
+
+    Up is where the open lids are apart; partners are at one place across the eye.
+    """
+    across = neutral[upper[-1]] - neutral[upper[0]]
+    width = float(np.linalg.norm(across))
+    across = across / width
+    up = neutral[upper].mean(0) - neutral[lower].mean(0)
+    up = up / np.linalg.norm(up)
+    order = np.argsort(closed[lower] @ across, kind="stable")
+    landing = np.interp(closed[upper] @ across, (closed[lower] @ across)[order], (closed[lower] @ up)[order])
+    return closed[upper] @ up - landing, up, width
