@@ -48,6 +48,18 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
+    rig = commands.add_parser("rig", help="give a neutral head of any topology the expressions")
+    rig.add_argument("mesh", type=Path, metavar="MESH", help=".obj, mouth closed and eyes open")
+    rig.add_argument(
+        "--landmarks",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help=".json: 68 entries in iBUG order, each a vertex (0-based), [x, y, z], or null",
+    )
+    rig.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, in the mesh's own frame")
+    rig.add_argument("--texture", type=Path, metavar="IMAGE", help="picture for the mesh's texture coordinates")
+    rig.set_defaults(run=_rig)
     add_bench(commands)
     return parser
 
@@ -67,6 +79,12 @@ def _make(options: argparse.Namespace) -> None:
         snap=options.snap,
         photometric=options.photometric,
     )
+
+
+def _rig(options: argparse.Namespace) -> None:
+    from toongeo.app.rig import rig
+
+    rig(options.mesh, options.landmarks, options.output, texture=options.texture)
 
 
 def _demo(options: argparse.Namespace) -> None:

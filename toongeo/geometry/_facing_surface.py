@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import igl
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from toongeo.geometry.vertex_normals import vertex_normals
 
-__all__ = ["FacingSurface", "barycentric", "boundary_edges"]
+__all__ = ["FacingSurface", "barycentric"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -82,7 +81,9 @@ class FacingSurface:
         """Unit normals (p, 3), interpolated between the vertices."""
         normals = np.einsum("pc,pcd->pd", bary, self.normals[self.F[triangles]])
         length = np.linalg.norm(normals, axis=1, keepdims=True)
-        return np.asarray(np.where(length > 0, normals / np.where(length > 0, length, 1.0), self.triangle_normals[triangles]))
+        return np.asarray(
+            np.where(length > 0, normals / np.where(length > 0, length, 1.0), self.triangle_normals[triangles])
+        )
 
     def at_border(self, triangles: Integers, bary: Floats) -> NDArray[np.bool_]:
         """Whether points (p,) lie on an edge where the mesh ends: what seeks them lies beyond it, mostly."""
@@ -108,12 +109,6 @@ def _open_sides(F: Integers) -> NDArray[np.bool_]:
     key = np.minimum(a, b) * n + np.maximum(a, b)
     _, inverse, count = np.unique(key, return_inverse=True, return_counts=True)
     return np.asarray(count[inverse].reshape(F.shape) == 1)
-
-
-def boundary_edges(F: Integers) -> Integers:
-    """Edges (e, 2) of one triangle only."""
-    row, corner = np.nonzero(_open_sides(F))
-    return np.stack([F[row, (corner + 1) % 3], F[row, (corner + 2) % 3]], axis=1)
 
 
 def barycentric(P: Floats, triangles: Floats) -> Floats:

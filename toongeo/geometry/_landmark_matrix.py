@@ -51,7 +51,9 @@ def landmark_matrix(
         raise ValueError(f"{name}: expected vertex indices (k,) or points (k, 3), k >= 1, got {got}")
     points = array.astype(np.float64)
     if np.isinf(points).any():
-        raise ValueError(f"{name}: expected finite coordinates or NaN, got infinity in row {np.isinf(points).any(1).argmax()}")
+        raise ValueError(
+            f"{name}: expected finite coordinates or NaN, got infinity in row {np.isinf(points).any(1).argmax()}"
+        )
     given = ~np.isnan(points).any(1)
     rows = np.flatnonzero(given)
     if not len(rows):

@@ -84,8 +84,8 @@ class DeformationTransfer:
     pinned : (p,) int, optional
         Vertices held exactly where the target has them, in every transfer.
     weights : {"uniform", "area"}
-        Of the triangles in the energy. The paper counts them alike, so that where a mesh is fine it is stiff; by area the
-        result depends on the surfaces alone, which matters where source and target mesh differ much in density.
+        Of the triangles in the energy. The paper counts them alike, so that where a mesh is fine it is stiff; by area
+        the result depends on the surfaces alone, which matters where source and target mesh differ much in density.
 
     Raises
     ------

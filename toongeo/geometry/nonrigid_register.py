@@ -6,15 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse.linalg import SuperLU
 
 from toongeo._read_only import read_only
 from toongeo.geometry._facing_surface import FACING, FacingSurface
-from toongeo.geometry._factor import factor_spd, solve
 from toongeo.geometry._landmark_matrix import landmark_matrix
-from toongeo.geometry.cotangent_laplacian import cotangent_laplacian
+from toongeo.geometry._thin_shell import ThinShell
 from toongeo.geometry.similarity import similarity
 from toongeo.geometry.validate_mesh import validate_mesh
 from toongeo.geometry.vertex_normals import vertex_normals
@@ -25,12 +22,7 @@ Floats = NDArray[np.float64]
 
 STIFFNESS = (0.3, 0.03, 0.003, 0.0003)
 ITERATIONS = 4
-# With the landmarks' root mean square distance from their centre as the unit of length, at stiffness 1:
-BENDING, STRETCHING = 1e-3, 1e-3
-STAY = 1e-6  # what nothing pulls, such as a loose part, stays where the similarity puts it
-SLIDING = 0.1  # weight of an error along the surface against one across it
-LEAST_REACH, REACH = 0.02, 3.0  # distance at which a partner's pull fades: units, medians of the distances
-STEPS, PRECISION = 8, 1e-3  # of the conjugate gradients in each iteration
+MATCHED = 0.1  # units: a partner farther away in the end is none
 CONVERGED = 1e-3  # units: mean step of the last iteration
 
 
@@ -49,14 +41,16 @@ class RegisteredMesh:
     distances : (n,) float64, unit of the target
         To the partner.
     matched : (n,) bool
-        Vertices with a partner that faces the same way and is not at a border of the target.
+        Vertices with a partner that faces the same way, is not at a border of the target, and is nearer than a tenth of
+        the spread of the landmarks.
     landmark_errors : (k,) float64, unit of the target
         NaN where a landmark is missing.
     scale, rotation, shift : float, (3, 3), (3,)
         The similarity ``scale * V_source @ rotation.T + shift`` from which the deformation started.
     iterations : int
     status : {"converged", "iteration limit"}
-        Whether the last iteration moved the vertices by less than a thousandth of the spread of the landmarks, on average.
+        Whether the last iteration moved the vertices by less than a thousandth of the spread of the landmarks, on
+        average.
     """
 
     vertices: Floats
@@ -91,10 +85,10 @@ def nonrigid_register(
 ) -> RegisteredMesh:
     """Deform a mesh onto another one by landmarks and regularized non-rigid closest points.
 
-    A similarity brings the landmarks together. Then, at ever lower stiffness, every vertex looks for the closest point of
-    the target that faces the same way, and moves towards it, mostly across the surface; a thin shell's resistance against
-    bending and stretching (of the displacements, since the stiffness was last lowered) keeps the motion smooth. Partners
-    at borders of the target or much farther away than others pull less or not at all.
+    A similarity brings the landmarks together. Then, at ever lower stiffness, every vertex looks for the closest point
+    of the target that faces the same way, and moves towards it, mostly across the surface; a thin shell's resistance
+    against bending and stretching (of the displacements, since the stiffness was last lowered) keeps the motion smooth.
+    Partners at borders of the target or much farther away than others pull less or not at all.
 
     Parameters
     ----------
@@ -105,8 +99,8 @@ def nonrigid_register(
     F_target : (q, 3) int
         Any topology, oriented like the source's.
     source_landmarks, target_landmarks : (k,) int or (k, 3) float
-        Vertices, or points on or near the surface; row i of one belongs to row i of the other. A row with NaN is missing;
-        at least three must be left, not all on a line.
+        Vertices, or points on or near the surface; row i of one belongs to row i of the other. A row with NaN is
+        missing; at least three must be left, not all on a line.
     fitted : (n,) bool, optional
         Source vertices that have a counterpart on the target; the others (the inside of a mouth, say) are taken along.
     landmark_weight : float or (k,) float
@@ -123,8 +117,8 @@ def nonrigid_register(
     Raises
     ------
     ValueError
-        On malformed meshes, triangles of the source without area, landmarks out of range, not in pairs, too few, or on a
-        line, and options out of range.
+        On malformed meshes, triangles of the source without area, landmarks out of range, not in pairs, too few, or on
+        a line, options out of range, and where no vertex finds a partner.
 
     References
     ----------
@@ -156,20 +150,26 @@ def nonrigid_register(
     scale, rotation, shift = similarity(start, points)
     unit = float(np.sqrt(((start - start.mean(0)) ** 2).sum(1).mean()))
     # The target is brought to the source, not the source to it: what follows does not depend on the target's frame.
-    shell = _Shell(source / unit, corners, at, weights[both])
+    shell = ThinShell(source / unit, corners, at, weights[both])
     surface = FacingSurface((target - shift) @ rotation / (scale * unit), target_corners)
     X, step = shell.laid_on(surface, (points - shift) @ rotation / (scale * unit), mask, levels, iterations)
     triangles, bary, cosines = surface.closest(X, vertex_normals(X, corners))
+    distances = np.linalg.norm(surface.points(triangles, bary) - X, axis=1)
+    matched = (cosines >= FACING) & ~surface.at_border(triangles, bary) & (distances <= MATCHED)
+    if mask.any() and not matched[mask].any():
+        raise ValueError(
+            "V_target: expected a surface on which the source can be laid, with triangles oriented like the source's, "
+            "got one where no vertex finds a partner"
+        )
     vertices = scale * unit * X @ rotation.T + shift
-    partners = np.einsum("pc,pcd->pd", bary, target[target_corners[triangles]])
     errors = np.full(len(both), np.nan)
     errors[both] = np.linalg.norm(at @ vertices - points, axis=1)
     return RegisteredMesh(
         vertices=vertices,
         faces=triangles,
         barycentric=bary,
-        distances=np.linalg.norm(partners - vertices, axis=1),
-        matched=(cosines >= FACING) & ~surface.at_border(triangles, bary),
+        distances=distances * scale * unit,
+        matched=matched,
         landmark_errors=errors,
         scale=scale,
         rotation=rotation,
@@ -177,88 +177,6 @@ def nonrigid_register(
         iterations=len(levels) * iterations,
         status="converged" if step <= CONVERGED else "iteration limit",
     )
-
-
-class _Shell:
-    """The source as a thin shell that resists bending and stretching; all lengths in units."""
-
-    def __init__(self, V: Floats, F: NDArray[np.int64], at: sp.csr_matrix, landmark_weight: Floats) -> None:
-        self.V, self.F, self.at = V, F, at
-        L = cotangent_laplacian(V, F, clamp=0.05)
-        double = np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1)
-        area = np.bincount(F.ravel(), np.repeat(double / 6, 3), minlength=len(V))
-        area = np.maximum(area, 1e-3 * area.mean())
-        self.area = area
-        self.energy = BENDING * L @ sp.diags_array(1 / area) @ L + STRETCHING * L
-        self.stay = STAY * sp.diags_array(area)
-        self.pull = at.T @ sp.diags_array(landmark_weight)
-        self.landmarks = self.pull @ at
-
-    def laid_on(
-        self, surface: FacingSurface, points: Floats, fitted: NDArray[np.bool_], levels: Floats, iterations: int
-    ) -> tuple[Floats, float]:
-        """Vertices (n, 3) laid on a surface, and the mean length of the last step."""
-        stiff = levels[0] * self.energy + self.stay + self.landmarks
-        X = self.V + solve(factor_spd(stiff), self.pull @ (points - self.at @ self.V))
-        step = 0.0
-        for level in levels:
-            trust = level / levels[0]  # in the end surfaces decide: two annotators do not mark quite the same points
-            rest, smooth = X, level * self.energy + self.stay + trust * self.landmarks
-            mean_pull = (1 + 2 * SLIDING) / 3
-            factor = factor_spd(smooth + mean_pull * sp.diags_array(self.area * fitted))
-            to_points = trust * self.pull @ (points - self.at @ rest)
-            for _ in range(iterations):
-                before = X
-                X = rest + self._displacement(surface, X, rest, fitted, smooth, factor, to_points)
-                step = float(np.linalg.norm(X - before, axis=1).mean())
-        return X, step
-
-    def _displacement(
-        self,
-        surface: FacingSurface,
-        X: Floats,
-        rest: Floats,
-        fitted: NDArray[np.bool_],
-        smooth: sp.csr_matrix,
-        factor: SuperLU,
-        to_points: Floats,
-    ) -> Floats:
-        """Displacements (n, 3) from rest that bring vertices, now at X, nearer to their partners."""
-        triangles, bary, cosines = surface.closest(X, vertex_normals(X, self.F))
-        partners, normals = surface.points(triangles, bary), surface.normals_at(triangles, bary)
-        facing = fitted & (cosines >= FACING) & ~surface.at_border(triangles, bary)
-        distance = np.linalg.norm(partners - X, axis=1)
-        reach = max(LEAST_REACH, REACH * float(np.median(distance[facing]))) if facing.any() else LEAST_REACH
-        weight = (self.area * facing / (1 + (distance / reach) ** 2) ** 2)[:, None]  # Geman-McClure
-
-        def drawn(d: Floats) -> Floats:
-            across = normals * (normals * d).sum(1, keepdims=True)
-            return np.asarray(weight * (SLIDING * d + (1 - SLIDING) * across))
-
-        def system(d: Floats) -> Floats:
-            return np.asarray(smooth @ d) + drawn(d)
-
-        return _conjugate_gradients(system, to_points + drawn(partners - rest), X - rest, factor)
-
-
-def _conjugate_gradients(system, right: Floats, x: Floats, factor: SuperLU) -> Floats:
-    """A few preconditioned steps from x towards ``system(x) = right``."""
-    residual = right - system(x)
-    limit = PRECISION**2 * float((right**2).sum())
-    direction = np.zeros_like(x)
-    last = 1.0
-    for _ in range(STEPS):
-        if float((residual**2).sum()) <= limit:
-            break
-        z = solve(factor, residual)
-        size = float((residual * z).sum())
-        direction = z + size / last * direction
-        image = system(direction)
-        length = size / float((direction * image).sum())
-        x = x + length * direction
-        residual = residual - length * image
-        last = size
-    return x
 
 
 def _checked_mask(fitted: ArrayLike | None, n: int) -> NDArray[np.bool_]:
@@ -273,7 +191,7 @@ def _checked_mask(fitted: ArrayLike | None, n: int) -> NDArray[np.bool_]:
 def _checked_weights(weight: ArrayLike, k: int) -> Floats:
     weights = np.asarray(weight, np.float64)
     if weights.shape not in ((), (k,)) or not (np.isfinite(weights) & (weights > 0)).all():
-        raise ValueError(f"landmark_weight: expected a number or ({k},) numbers, finite and > 0, got {weight}")
+        raise ValueError(f"landmark_weight: expected a number or ({k},) numbers, finite and > 0, got {weight!r}")
     return np.broadcast_to(weights, (k,)).copy()
 
 
@@ -288,7 +206,9 @@ def _checked_stiffness(stiffness: Sequence[float], iterations: int) -> Floats:
 
 def _check_landmarks(both: NDArray[np.bool_], start: Floats, points: Floats) -> None:
     if both.sum() < 3:
-        raise ValueError(f"target_landmarks: expected at least 3 that both meshes have, got {both.sum()} of {len(both)}")
+        raise ValueError(
+            f"target_landmarks: expected at least 3 that both meshes have, got {both.sum()} of {len(both)}"
+        )
     for name, found in (("source_landmarks", start), ("target_landmarks", points)):
         spread = np.linalg.svd(found - found.mean(0), compute_uv=False)
         if spread[1] <= 1e-6 * spread[0]:

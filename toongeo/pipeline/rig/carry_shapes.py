@@ -16,8 +16,8 @@ def carry_shapes(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Move every vertex as its partner on a mesh that covers it.
 
-    The partner of a vertex is the closest point of the carrier's outer surface that faces the same way. Vertices without
-    one (of a mesh's inner parts, where the carrier has none or others) move with their neighbours.
+    The partner of a vertex is the closest point of the carrier's outer surface that faces the same way. Vertices
+    without one (of a mesh's inner parts, where the carrier has none or others) move with their neighbours.
 
     Parameters
     ----------

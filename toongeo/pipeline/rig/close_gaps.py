@@ -13,9 +13,9 @@ EVEN = 1e-3  # of an eye's width: a gap that is left alone
 def close_gaps(model: MorphableModel, neutral: np.ndarray, closed: np.ndarray, side: str) -> np.ndarray:
     """Bring the upper lid down where a blink has left it too high over the lower one.
 
-    Transfer keeps rotations and stretches, not contacts: eyes taller than the model's stay open. On the model the upper lid
-    comes to lie over the lower one, like a tile; here it does so at least half as far, in widths of the eye. Where it does
-    already it is left as it is.
+    Transfer keeps rotations and stretches, not contacts: eyes taller than the model's stay open. On the model the upper
+    lid comes to lie over the lower one, like a tile; here it does so at least half as far, in widths of the eye. Where
+    it does already it is left as it is.
 
     Parameters
     ----------

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from toongeo.geometry import DeformationTransfer, validate_mesh
 from toongeo.geometry._landmark_matrix import landmark_matrix
+from toongeo.geometry.similarity import similarity
 from toongeo.model import MorphableModel, default_model
 from toongeo.model.ibug68 import INNER
 from toongeo.pipeline.align.align_face import AlignedFace
@@ -18,18 +19,19 @@ from toongeo.pipeline.rig.register_face import hidden, register_face
 from toongeo.pipeline.rig.rig import Rig
 
 LEAST_LANDMARKS = 12  # of the inner ones
+LIKENESS = 0.5  # of their spread: how far landmarks of a face may be from the model's, root mean square
 STILL = 1e-3  # of the largest motion: what moves less in every expression is held
-LEAST_MATCHED = 0.5  # of the skin: with less the two are not the same kind of surface
+LEAST_MATCHED = 0.5  # of the face: with less the two are not the same kind of surface
 
 
 def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: MorphableModel | None = None) -> Rig:
     """Give a neutral head of any topology the named expressions of a model.
 
     The model's mean is laid on the head by landmarks and non-rigid closest points
-    (:func:`toongeo.nonrigid_register`), takes over the gradients of the expressions there (Sumner and Popovic's transfer,
-    triangles weighted by area), and closes the gaps that blinks have left. Every vertex of the head then moves as the
-    point of the model's mesh that lies on it; parts without one follow their surroundings, teeth as the model's teeth,
-    eyeballs not at all.
+    (:func:`toongeo.nonrigid_register`), takes over the gradients of the expressions there (Sumner and Popovic's
+    transfer, triangles weighted by area), and closes the gaps that blinks have left. Every vertex of the head then
+    moves as the point of the model's mesh that lies on it; parts without one follow their surroundings, teeth as the
+    model's teeth, eyeballs not at all.
 
     Parameters
     ----------
@@ -47,8 +49,8 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     -------
     Rig
         ``names``, ``neutral`` (`V`) and ``deltas`` (k, n, 3) in the frame and unit of `V`; nothing follows the gaze.
-        ``report`` holds ``seconds``, ``matched`` (share of the model's skin that found a partner), ``distance`` (its mean
-        distance, in units of `V`) and ``partnered`` (share of the head's vertices).
+        ``report`` holds ``seconds``, ``matched`` (share of the model's face that found a partner), ``distance`` (its
+        mean distance, in units of `V`) and ``partnered`` (share of the head's vertices).
 
     Raises
     ------
@@ -76,16 +78,17 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     model = model or default_model()
     vertices, faces = validate_mesh(V, F)
     used = np.unique(faces)
-    points = _checked_points(vertices, faces, landmarks)
+    points = _checked_points(vertices, faces, landmarks, model)
     # Vertices in no triangle have no surface around them, and stay.
     local = np.searchsorted(used, faces)
     head = register_face(vertices[used], local, points, model)
     skin = ~hidden(model)
-    matched = float(head.registration.matched[skin].mean())
+    face = model.regions.get("face", skin) & skin
+    matched = float(head.registration.matched[face].mean())
     if matched < LEAST_MATCHED:
         raise ValueError(
             f"V: expected a head on which the model's face fits, with triangles counter-clockwise from outside, "
-            f"got one where {matched:.0%} of the skin finds a partner"
+            f"got one where {matched:.0%} of it finds a partner"
         )
     shapes = head.to_foreign(_transferred(head.face))
     carrier = head.registration.vertices.copy()
@@ -102,13 +105,13 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
         report={
             "seconds": time.perf_counter() - started,
             "matched": matched,
-            "distance": float(head.registration.distances[skin & head.registration.matched].mean()),
+            "distance": float(head.registration.distances[face & head.registration.matched].mean()),
             "partnered": float(partnered.mean()),
         },
     )
 
 
-def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike) -> np.ndarray:
+def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike, model: MorphableModel) -> np.ndarray:
     """Landmarks as points (68, 3); NaN rows are missing."""
     matrix, given = landmark_matrix(V, F, landmarks, "landmarks")
     if len(given) != 68:
@@ -117,7 +120,20 @@ def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike) -> np.nd
         raise ValueError(
             f"landmarks: expected at least {LEAST_LANDMARKS} of the points 17-67, got {given[INNER].sum()}"
         )
-    return np.where(given[:, None], matrix @ V, np.nan)
+    points = np.where(given[:, None], matrix @ V, np.nan)
+    inner = INNER[given[INNER]]
+    own, found = model.mean[model.landmarks[inner]], points[inner]
+    spread = np.sqrt(((found - found.mean(0)) ** 2).sum(1).mean())
+    misfit = np.inf
+    if spread > 0:
+        scale, rotation, shift = similarity(own, found)
+        misfit = np.sqrt(((found - scale * own @ rotation.T - shift) ** 2).sum(1).mean()) / spread
+    if not misfit <= LIKENESS:
+        raise ValueError(
+            f"landmarks: expected the points of a face in the order of iBUG-68, got ones that are off by "
+            f"{misfit:.0%} of their spread from the model's, however it is turned"
+        )
+    return points
 
 
 def _transferred(face: AlignedFace) -> np.ndarray:
