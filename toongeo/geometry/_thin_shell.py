@@ -23,6 +23,7 @@ BENDING, STRETCHING = 1e-3, 1e-3
 STAY = 1e-6  # what nothing pulls, such as a loose part, stays where the similarity puts it
 SLIDING = 0.1  # weight of an error along the surface against one across it
 LEAST_REACH, REACH = 0.02, 3.0  # distance at which a partner's pull fades: units, medians of the distances
+THINNED = 4  # a stiff shell has no need of more: every so many vertices look for a partner, but for the last two levels
 STEPS, PRECISION = 8, 1e-3  # of the conjugate gradients in each iteration
 
 
@@ -48,7 +49,9 @@ class ThinShell:
         stiff = levels[0] * self.energy + self.stay + self.landmarks
         X = self.V + solve(factor_spd(stiff), self.pull @ (points - self.at @ self.V))
         step = 0.0
-        for level in levels:
+        sought = np.flatnonzero(fitted)
+        for number, level in enumerate(levels):
+            stride = THINNED if number < len(levels) - 2 else 1
             trust = level / levels[0]  # in the end surfaces decide: two annotators do not mark quite the same points
             rest, smooth = X, level * self.energy + self.stay + trust * self.landmarks
             mean_pull = (1 + 2 * SLIDING) / 3
@@ -56,7 +59,7 @@ class ThinShell:
             to_points = trust * self.pull @ (points - self.at @ rest)
             for _ in range(iterations):
                 before = X
-                X = rest + self._displacement(surface, X, rest, fitted, smooth, factor, to_points)
+                X = rest + self._displacement(surface, X, rest, sought[::stride], stride, smooth, factor, to_points)
                 step = float(np.linalg.norm(X - before, axis=1).mean())
         return X, step
 
@@ -65,27 +68,34 @@ class ThinShell:
         surface: FacingSurface,
         X: Floats,
         rest: Floats,
-        fitted: NDArray[np.bool_],
+        rows: NDArray[np.int64],
+        stride: int,
         smooth: sp.csr_matrix,
         factor: SuperLU,
         to_points: Floats,
     ) -> Floats:
-        """Displacements (n, 3) from rest that bring vertices, now at X, nearer to their partners."""
-        triangles, bary, cosines = surface.closest(X, vertex_normals(X, self.F))
+        """Displacements (n, 3) from rest that bring the vertices ``rows``, now at X, nearer to their partners.
+
+        They are every ``stride``-th, and speak for those between them.
+        """
+        seekers = X[rows]
+        triangles, bary, cosines = surface.closest(seekers, vertex_normals(X, self.F)[rows])
         partners, normals = surface.points(triangles, bary), surface.normals_at(triangles, bary)
-        facing = fitted & (cosines >= FACING) & ~surface.at_border(triangles, bary)
-        distance = np.linalg.norm(partners - X, axis=1)
+        facing = (cosines >= FACING) & ~surface.at_border(triangles, bary)
+        distance = np.linalg.norm(partners - seekers, axis=1)
         reach = max(LEAST_REACH, REACH * float(np.median(distance[facing]))) if facing.any() else LEAST_REACH
-        weight = (self.area * facing / (1 + (distance / reach) ** 2) ** 2)[:, None]  # Geman-McClure
+        weight = (stride * self.area[rows] * facing / (1 + (distance / reach) ** 2) ** 2)[:, None]  # Geman-McClure
 
         def drawn(d: Floats) -> Floats:
             across = normals * (normals * d).sum(1, keepdims=True)
-            return np.asarray(weight * (SLIDING * d + (1 - SLIDING) * across))
+            pulls = np.zeros_like(X)
+            pulls[rows] = weight * (SLIDING * d + (1 - SLIDING) * across)
+            return pulls
 
         def system(d: Floats) -> Floats:
-            return np.asarray(smooth @ d) + drawn(d)
+            return np.asarray(smooth @ d) + drawn(d[rows])
 
-        return _conjugate_gradients(system, to_points + drawn(partners - rest), X - rest, factor)
+        return _conjugate_gradients(system, to_points + drawn(partners - rest[rows]), X - rest, factor)
 
 
 def _conjugate_gradients(system: Callable[[Floats], Floats], right: Floats, x: Floats, factor: SuperLU) -> Floats:
