@@ -54,7 +54,8 @@ def landmark_matrix(
         raise ValueError(
             f"{name}: expected finite coordinates or NaN, got infinity in row {np.isinf(points).any(1).argmax()}"
         )
-    given = ~np.isnan(points).any(1)
+    given = np.ones(len(points), bool)
+    given[np.isnan(points).any(axis=1)] = False
     rows = np.flatnonzero(given)
     if not len(rows):
         return sp.csr_matrix((len(points), n)), given
