@@ -11,7 +11,7 @@ from toongeo.model.ibug68 import INNER
 from toongeo.model.load_ict_facekit import load_ict_facekit
 from toongeo.pipeline.align.rim_anchors import rim_path
 from toongeo.pipeline.rig.close_gaps import _heights, close_gaps
-from toongeo.pipeline.rig.loose_parts import settle_loose_parts
+from toongeo.pipeline.rig.loose_parts import MouthParts, settle_loose_parts
 from toongeo.pipeline.rig.rig_mesh import rig_mesh
 
 SHIFT = np.array([3.0, -2.0, 9.0])
@@ -117,18 +117,35 @@ def test_a_taller_eye_is_closed(model):
     np.testing.assert_array_equal(close_gaps(model, model.mean, model.mean + blink, "left"), model.mean + blink)
 
 
-def test_loose_parts_move_as_rigid_bodies(rng):
-    big = rng.normal(size=(20, 3))
-    tooth = rng.normal(size=(8, 3)) + 5
-    V = np.vstack([big, tooth])
+def test_a_tooth_moves_with_its_row_and_does_not_bend(rng):
+    skin, tooth, row = rng.normal(size=(20, 3)), rng.normal(size=(8, 3)) + 5, rng.normal(size=(30, 3)) + 5
+    V = np.vstack([skin, tooth])
     F = np.vstack([[(k, k + 1, k + 2) for k in range(18)], [(20 + k, 21 + k, 22 + k) for k in range(6)]])
     shapes = rng.normal(0, 0.1, size=(3, 28, 3))
-    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(28) < 20)
+    of_row = np.arange(60) < 30
+    drop = np.array([[0, -2.0, 0], [1, 0, 0], [0, 0, 0]])[:, None] * of_row[:, None]
+    within = MouthParts(np.vstack([row, row + 100]), drop, of_row, (of_row, ~of_row))
+    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(28) < 20, within)
     np.testing.assert_array_equal(found[:, :20], shapes[:, :20])
-    for shape, given in zip(found, shapes, strict=True):
+    np.testing.assert_allclose(found[:, 20:], np.broadcast_to(drop[:, :1], (3, 8, 3)), atol=1e-12)
+    bent = dataclasses.replace(within, shapes=drop + rng.normal(0, 0.1, size=(3, 60, 3)))
+    for shape in settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(28) < 20, bent):
         pairs = [np.linalg.norm(x[:, None] - x, axis=2) for x in (tooth, tooth + shape[20:])]
         np.testing.assert_allclose(pairs[0], pairs[1], atol=1e-12)
-        np.testing.assert_allclose(shape[20:].mean(0), given[20:].mean(0), atol=1e-12)
+
+
+def test_a_lash_moves_as_the_lid_it_grows_on():
+    """A strip that stands on the edge of a plate and leans over it: all of it moves as the edge."""
+    x, y = np.meshgrid(np.linspace(0, 4, 5), np.linspace(0, 8, 9), indexing="ij")
+    plate = np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])
+    strip = np.array([[z, k, z] for k in range(1, 8) for z in (0.1, 1.0, 2.0, 3.0)])
+    V = np.vstack([plate, strip])
+    F = np.vstack([[(k, k + 1, k + 9) for k in range(36)], [(45 + k, 46 + k, 47 + k) for k in range(26)]])
+    shapes = np.zeros((1, len(V), 3))
+    shapes[0, :9, 1] = -1.0  # the edge x = 0
+    within = MouthParts(plate, shapes[:, :45], np.zeros(45, bool), ())
+    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(len(V)) < 45, within)
+    np.testing.assert_array_equal(found[0, 45:], np.broadcast_to([0, -1.0, 0], (28, 3)))
 
 
 @pytest.mark.parametrize(

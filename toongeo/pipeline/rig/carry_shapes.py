@@ -7,7 +7,7 @@ from toongeo.geometry import cotangent_laplacian, vertex_normals
 from toongeo.geometry._facing_surface import FACING, FacingSurface
 from toongeo.geometry._factor import factor_spd, solve
 
-NEAR = 0.02  # of the carrying mesh's size: a partner farther away is no evidence
+NEAR = 0.005  # of the carrying mesh's size: a partner farther away is no evidence
 PULL = 1e-4  # of a doubtful partner, against a plate's resistance to bending
 
 

@@ -11,10 +11,11 @@ from toongeo.geometry.similarity import similarity
 from toongeo.model import MorphableModel, default_model
 from toongeo.model.ibug68 import INNER
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.straighten_teeth import PARTS
 from toongeo.pipeline.rig.carry_shapes import carry_shapes
 from toongeo.pipeline.rig.close_gaps import close_gaps
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
-from toongeo.pipeline.rig.loose_parts import settle_loose_parts
+from toongeo.pipeline.rig.loose_parts import MouthParts, settle_loose_parts
 from toongeo.pipeline.rig.register_face import hidden, register_face
 from toongeo.pipeline.rig.rig import Rig
 
@@ -95,7 +96,9 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     carrier[~skin] = head.to_foreign(head.face.vertices[~skin]) + head.shift
     carried, partnered = carry_shapes(carrier, model.faces, skin, shapes, vertices[used], local)
     deltas = np.zeros((len(shapes), len(vertices), 3), np.float32)
-    deltas[:, used] = settle_loose_parts(vertices[used], local, points, carried, partnered)
+    deltas[:, used] = settle_loose_parts(
+        vertices[used], local, points, carried, partnered, _mouth_parts(model, carrier, shapes)
+    )
     return Rig(
         names=model.expression_names[: model.n_named],
         neutral=vertices.copy(),
@@ -134,6 +137,12 @@ def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike, model: M
             f"{misfit:.0%} of their spread from the model's, however it is turned"
         )
     return points
+
+
+def _mouth_parts(model: MorphableModel, vertices: np.ndarray, shapes: np.ndarray) -> MouthParts:
+    parts = tuple(model.regions[name] for name in PARTS if name in model.regions)
+    mouth = [*parts, model.regions.get("mouth_cavity", np.zeros(len(vertices), bool))]
+    return MouthParts(vertices, shapes, np.any(mouth, axis=0), parts)
 
 
 def _transferred(face: AlignedFace) -> np.ndarray:
