@@ -8,7 +8,7 @@ from toongeo.geometry._facing_surface import FACING, FacingSurface
 from toongeo.geometry._factor import factor_spd, solve
 
 NEAR = 0.005  # of the carrying mesh's size: a partner farther away is no evidence
-PULL = 1e-4  # of a doubtful partner, against a plate's resistance to bending
+PULL = 1e-3  # of a doubtful partner, against a plate's resistance to bending
 
 
 def carry_shapes(
@@ -46,8 +46,8 @@ def carry_shapes(
     border = skin.at_border(triangles, bary)
     partnered = (cosines >= FACING) & ~far & ~border
     partners = front[triangles]
-    # The inside of the carrier's mouth says how teeth move, which hang on nothing.
-    lost = np.flatnonzero(far & ~border)
+    # Deep inside, the carrier's own mouth is the best guide that there is.
+    lost = np.flatnonzero(far)
     if len(lost):
         whole = FacingSurface(V_carrier, F_carrier)
         triangles, bary[lost], _ = whole.closest(V[lost], N[lost])
