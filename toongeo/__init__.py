@@ -14,6 +14,7 @@ The stages, in the order in which :func:`make_avatar` calls them:
    :func:`load_avatar` reads a .glb back.
 9. :class:`LandmarkDriver`, :class:`ArkitDriver` - weights of another face's performance, for any avatar.
 
+A head that was modelled elsewhere gets the expressions from :func:`rig_mesh` (by :func:`nonrigid_register`).
 For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space.
 
 Every name is imported when it is first used, so ``import toongeo`` itself costs almost nothing.
@@ -48,6 +49,8 @@ __getattr__, __dir__, __all__ = attach(
         "Take": "driving",
         "send_weights": "driving",
         "ExpressionDriver": "protocols",
+        "nonrigid_register": "geometry",
+        "RegisteredMesh": "geometry",
         "Coefficients": "protocols",
         "fit_3dmm": "pipeline",
         "RidgeRegressor": "pipeline",
@@ -74,6 +77,7 @@ __getattr__, __dir__, __all__ = attach(
         "build_rig": "pipeline",
         "Rig": "pipeline",
         "Animator": "pipeline",
+        "rig_mesh": "pipeline",
         "fit_eyes": "pipeline",
         "close_lids": "pipeline",
         "clear_lids": "pipeline",

@@ -15,8 +15,10 @@ from toongeo.driving import Take as Take
 from toongeo.driving import send_weights as send_weights
 from toongeo.geometry import DeformationTransfer as DeformationTransfer
 from toongeo.geometry import LaplacianAligner as LaplacianAligner
+from toongeo.geometry import RegisteredMesh as RegisteredMesh
 from toongeo.geometry import deformation_transfer as deformation_transfer
 from toongeo.geometry import laplacian_align as laplacian_align
+from toongeo.geometry import nonrigid_register as nonrigid_register
 from toongeo.io import read_image as read_image
 from toongeo.io import read_landmarks as read_landmarks
 from toongeo.io import write_landmarks as write_landmarks
@@ -51,6 +53,7 @@ from toongeo.pipeline import parse_face as parse_face
 from toongeo.pipeline import photometric_fit as photometric_fit
 from toongeo.pipeline import rendered_picture as rendered_picture
 from toongeo.pipeline import residual_map as residual_map
+from toongeo.pipeline import rig_mesh as rig_mesh
 from toongeo.pipeline import snap_eyes as snap_eyes
 from toongeo.pipeline import texture_coordinates as texture_coordinates
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor

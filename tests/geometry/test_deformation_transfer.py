@@ -228,3 +228,30 @@ def test_bad_input_is_named(bumpy, deformed, target, change, message):
     arguments = {"V_source": source, "V_deformed": deformed, "F": F, "V_target": target} | change
     with pytest.raises(ValueError, match=message):
         deformation_transfer(**arguments)
+
+
+def test_by_area_the_result_hardly_depends_on_the_mesh(sphere, target, deformed, bumpy):
+    """Triangles cut into four count as before; in the paper's energy they count four times."""
+    V, F = bumpy
+    cut = F[:, 0] % 3 == 0  # a third of the triangles, each into three about its centre
+
+    def refined(X):
+        return np.vstack([X, X[F[cut]].mean(1)])
+
+    centres = len(V) + np.arange(cut.sum())
+    a, b, c = F[cut].T
+    finer = np.vstack([F[~cut], *(np.column_stack(t) for t in ((a, b, centres), (b, c, centres), (c, a, centres)))])
+    moved = {}
+    for weights in ("uniform", "area"):
+        coarse = DeformationTransfer(V, F, target, pinned=[0], weights=weights).transfer(deformed)
+        fine = DeformationTransfer(refined(V), finer, refined(target), pinned=[0], weights=weights)
+        moved[weights] = np.abs(fine.transfer(refined(deformed))[: len(V)] - coarse).max()
+    assert moved["area"] < 0.5 * moved["uniform"]
+    same = DeformationTransfer(V, F, V, weights="area").transfer(deformed)
+    np.testing.assert_allclose(same, deformed, atol=1e-10)
+
+
+def test_unknown_weights_are_refused(bumpy):
+    V, F = bumpy
+    with pytest.raises(ValueError, match="weights: expected 'uniform' or 'area', got 'angle'"):
+        DeformationTransfer(V, F, V, weights="angle")

@@ -63,6 +63,18 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb")
     view.add_argument("--no-open", action="store_true", help="only print where the page is")
     view.set_defaults(run=_view)
+    rig = commands.add_parser("rig", help="give a neutral head of any topology the expressions")
+    rig.add_argument("mesh", type=Path, metavar="MESH", help=".obj, mouth closed and eyes open")
+    rig.add_argument(
+        "--landmarks",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help=".json: 68 entries in iBUG order, each a vertex (0-based), [x, y, z], or null",
+    )
+    rig.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, in the mesh's own frame")
+    rig.add_argument("--texture", type=Path, metavar="IMAGE", help="picture for the mesh's texture coordinates")
+    rig.set_defaults(run=_rig)
     add_bench(commands)
     return parser
 
@@ -123,6 +135,12 @@ def _saving(options: argparse.Namespace) -> dict[str, Any]:
 
         saving["meta"] = VrmMeta(authors=tuple(options.author))
     return saving
+
+
+def _rig(options: argparse.Namespace) -> None:
+    from toongeo.app.rig import rig
+
+    rig(options.mesh, options.landmarks, options.output, texture=options.texture)
 
 
 def _demo(options: argparse.Namespace) -> None:

@@ -7,6 +7,7 @@ from toongeo.geometry.deformation_gradients import deformation_gradients
 from toongeo.geometry.deformation_transfer import DeformationTransfer, deformation_transfer
 from toongeo.geometry.laplacian_align import laplacian_align
 from toongeo.geometry.laplacian_aligner import LaplacianAligner
+from toongeo.geometry.nonrigid_register import RegisteredMesh, nonrigid_register
 from toongeo.geometry.one_rings import OneRings, one_rings
 from toongeo.geometry.polar_decomposition import polar_decomposition
 from toongeo.geometry.rotation_exp import rotation_exp
@@ -21,12 +22,14 @@ __all__ = [
     "DeformationTransfer",
     "LaplacianAligner",
     "OneRings",
+    "RegisteredMesh",
     "adjacency",
     "catmull_clark",
     "cotangent_laplacian",
     "deformation_gradients",
     "deformation_transfer",
     "laplacian_align",
+    "nonrigid_register",
     "one_rings",
     "polar_decomposition",
     "rotation_exp",

@@ -31,7 +31,7 @@ def _dual_edges(
 
 
 def transfer_operators(
-    source: NDArray[np.float64], target: NDArray[np.float64], corners: NDArray[np.int64]
+    source: NDArray[np.float64], target: NDArray[np.float64], corners: NDArray[np.int64], *, by_area: bool = False
 ) -> tuple[sp.csr_matrix, sp.csr_matrix, sp.csr_matrix]:
     """``K`` (n, n), ``B`` (n, n), ``N`` (n, m) with ``K x = B v + N (n / sqrt|n|)`` for a deformed source v.
 
@@ -43,14 +43,16 @@ def transfer_operators(
     n, m = len(source), corners.shape[1]
     g1, g2, _ = _dual_edges(target, corners)
     gradients = (-g1 - g2, g1, g2)
+    weight = 1 / np.sqrt((cross(g1, g2) ** 2).sum(axis=0)) if by_area else 1.0  # of the triangle: twice its area
+    weighted = tuple(weight * g for g in gradients)
     h1, h2, h3 = _dual_edges(source, corners)
     hats = (-h1 - h2, h1, h2)
 
     rows = np.concatenate([corners[a] for a in range(3) for _ in range(3)])
     columns = np.concatenate([corners[b] for _ in range(3) for b in range(3)])
-    stiffness = np.concatenate([(ga * gb).sum(axis=0) for ga in gradients for gb in gradients])
-    mixed = np.concatenate([(ga * hb).sum(axis=0) for ga in gradients for hb in hats])
-    tilt = np.concatenate([(ga * h3).sum(axis=0) for ga in gradients])
+    stiffness = np.concatenate([(ga * gb).sum(axis=0) for ga in weighted for gb in gradients])
+    mixed = np.concatenate([(ga * hb).sum(axis=0) for ga in weighted for hb in hats])
+    tilt = np.concatenate([(ga * h3).sum(axis=0) for ga in weighted])
     K = sp.csr_matrix((stiffness, (rows, columns)), shape=(n, n))
     B = sp.csr_matrix((mixed, (rows, columns)), shape=(n, n))
     N = sp.csr_matrix((tilt, (corners.ravel(), np.tile(np.arange(m), 3))), shape=(n, m))

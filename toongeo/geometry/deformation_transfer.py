@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -90,6 +92,9 @@ class DeformationTransfer:
     align : bool
         Turn the source at rest, and all its deformations with it, by the rotation that brings it nearest to the
         target (Kabsch). False is the method as published.
+    weights : {"uniform", "area"}
+        Of the triangles in the energy. The paper counts them alike, so that where a mesh is fine it is stiff; by area
+        the result depends on the surfaces alone, which matters where source and target mesh differ much in density.
 
     Raises
     ------
@@ -117,7 +122,10 @@ class DeformationTransfer:
         *,
         pinned: ArrayLike | None = None,
         align: bool = False,
+        weights: Literal["uniform", "area"] = "uniform",
     ) -> None:
+        if weights not in ("uniform", "area"):
+            raise ValueError(f"weights: expected 'uniform' or 'area', got {weights!r}")
         self._source, faces = validate_mesh(V_source, F, names=("V_source", "F"), nondegenerate=True)
         self._target, faces = validate_mesh(V_target, faces, names=("V_target", "F"), nondegenerate=True)
         n = len(self._source)
@@ -128,7 +136,9 @@ class DeformationTransfer:
         self._rotation = rigid_rotation(self._source, self._target) if align else np.eye(3)
 
         turned = self._source @ self._rotation.T
-        stiffness, from_vertices, from_normals = transfer_operators(turned, self._target, self._corners)
+        stiffness, from_vertices, from_normals = transfer_operators(
+            turned, self._target, self._corners, by_area=weights == "area"
+        )
         pins = _checked_pins(pinned, n)
         self._component = components(faces, n)
         lowest = np.unique(self._component, return_index=True)[1]

@@ -15,6 +15,7 @@ from toongeo.io.page_html import page_html
 from toongeo.io.read_glb import GlbDocument, read_glb
 from toongeo.io.read_image import read_image
 from toongeo.io.read_landmarks import read_landmarks
+from toongeo.io.read_mesh_landmarks import read_mesh_landmarks
 from toongeo.io.read_obj import ObjData, read_obj
 from toongeo.io.scene import Scene, SceneAnimation, SceneMesh
 from toongeo.io.split_seams import split_seams
@@ -46,6 +47,7 @@ __all__ = [
     "read_glb",
     "read_image",
     "read_landmarks",
+    "read_mesh_landmarks",
     "read_obj",
     "split_seams",
     "write_glb",

@@ -21,6 +21,7 @@ from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
 from toongeo.pipeline.rig.fit_mouth import fit_mouth
 from toongeo.pipeline.rig.neutral_face import neutral_face
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.rig_mesh import rig_mesh
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
 from toongeo.pipeline.texture.bake_texture import bake_texture
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
@@ -47,6 +48,7 @@ __all__ = [
     "fit_3dmm",
     "fit_eyes",
     "fit_mouth",
+    "rig_mesh",
     "train_ridge_regressor",
     "neutral_face",
     "parse_face",

@@ -60,7 +60,8 @@ def rim_path(model: MorphableModel, name: str) -> np.ndarray:
 @lru_cache(maxsize=4)
 def _rim_paths(model: MorphableModel) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """For each rim its vertices from corner to corner, and where on that path its landmarks are."""
-    near = np.any([model.region(name) for name in ("mouth", "eye_left", "eye_right", "lips")], axis=0)
+    parts = ("mouth", "eye_left", "eye_right", "lips")
+    near = np.any([model.regions[name] for name in parts if name in model.regions], axis=0)
     A = adjacency(model.faces, len(model.mean)).tocoo()
     inside = near[A.row] & near[A.col]
     i, j = A.row[inside], A.col[inside]
