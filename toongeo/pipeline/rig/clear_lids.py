@@ -1,48 +1,95 @@
-"""Lids that do not enter the eyeballs."""
+"""Lids that slide over the eyeballs."""
 
 import dataclasses
 import time
+from functools import lru_cache
 
 import numpy as np
+import scipy.sparse as sp
 
+from toongeo.geometry import adjacency
+from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.fit_eyes import CLEARANCE, SIDES, Eyes
+from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
 from toongeo.pipeline.rig.rig import Rig
 
+CLEARANCE = 0.01  # of the radius: how far skin stays off an eyeball on its way
 NEAR = 3.0  # radii from an eyeball's centre: skin farther from it does not come to it
+ROUNDS = 6  # of pushing out and smoothing
+SHORTEST = 0.05  # of the way: what is inside earlier than that is pushed as if it were there
 
 
 def clear_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
-    """Keep the skin off the eyeballs, in each expression at weight 1.
+    """Keep the skin off the eyeballs, all the way from the neutral face to each expression, the gaze included.
 
-    Vertices that an expression takes into the front half of an eyeball are moved out to its surface. Several
-    expressions at once add their deltas and may still touch it.
+    A blendshape moves skin on straight lines, which cut the corner that a real lid goes around. Each vertex that comes
+    into the front half of an eyeball on its way has the end of the way moved outwards until it passes by, and the skin
+    around follows. Several expressions at once add their deltas and may still touch an eyeball.
 
     Parameters
     ----------
     face : AlignedFace
     rig : Rig
+        Its neutral skin must be outside (:func:`~toongeo.pipeline.rig.seat_lids.seat_lids`).
     eyes : Eyes
 
     Returns
     -------
     Rig
-        A new one; only vertices around the eyes differ.
+        A new one; only skin around the eyes differs.
     """
     started = time.perf_counter()
-    deltas, skin = rig.deltas.copy(), face.region("skin")
+    deltas, gaze, skin = rig.deltas.copy(), rig.gaze.copy(), face.region("skin")
     for side in range(len(SIDES)):
-        near = np.linalg.norm(rig.neutral - eyes.centres[side], axis=1) < NEAR * eyes.radii[side]
-        lids = np.flatnonzero(skin & near)
-        offsets = rig.neutral[lids] + deltas[:, lids] - eyes.centres[side]
-        deltas[:, lids] += _outward(offsets, eyes.radii[side] * (1 + CLEARANCE))
-    return dataclasses.replace(
-        rig, deltas=deltas, report={"seconds": rig.report["seconds"] + time.perf_counter() - started}
-    )
+        offset = rig.neutral - eyes.centres[side]
+        near = np.flatnonzero(skin & (np.linalg.norm(offset, axis=1) < NEAR * eyes.radii[side]))
+        spread = _spread(face.model)[near][:, near]
+        for shapes in (deltas, gaze):
+            moved = np.flatnonzero(np.any(shapes[:, near], axis=(1, 2)))
+            for k in moved:
+                shapes[k, near] = cleared(offset[near], shapes[k, near], eyes.radii[side] * (1 + CLEARANCE), spread)
+    report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
+    return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
 
 
-def _outward(offsets: np.ndarray, radius: float) -> np.ndarray:
-    """Shifts (..., 3) that bring offsets from a sphere's centre out of its front half to its surface."""
-    distance = np.linalg.norm(offsets, axis=-1, keepdims=True)
-    inside = (distance < radius) & (offsets[..., 2:] > 0)
-    return np.where(inside, offsets * (radius / np.maximum(distance, 1e-9) - 1), 0.0)
+def cleared(start: np.ndarray, way: np.ndarray, radius: float, spread: sp.csr_array) -> np.ndarray:
+    """Ways (k, 3) with their ends moved out, so that points that set out at ``start`` (k, 3) pass by a sphere.
+
+    Parameters
+    ----------
+    start : (k, 3) float, mm
+        From the sphere's centre.
+    way : (k, 3) float, mm
+    radius : float, mm
+    spread : (k, k) sparse
+        Means over neighbours, by which the change of a way spreads.
+    """
+    change = np.zeros(way.shape)
+    for k in range(ROUNDS):
+        lack = _lack(start, way + change, radius)
+        if not lack.any():
+            break
+        change += lack
+        if k < ROUNDS - 2:
+            mean = spread @ change
+            wider = np.linalg.norm(mean, axis=1) > np.linalg.norm(change, axis=1)
+            change[wider] = mean[wider]
+    return way + change
+
+
+def _lack(start: np.ndarray, way: np.ndarray, radius: float) -> np.ndarray:
+    """What the ends of ways (..., 3) lack for their nearest points in front to be ``radius`` from the origin."""
+    length2 = np.maximum((way**2).sum(-1), 1e-12)
+    share = np.clip(-(start * way).sum(-1) / length2, 0.0, 1.0)[..., None]
+    nearest = start + share * way
+    distance = np.linalg.norm(nearest, axis=-1, keepdims=True)
+    inside = (distance < radius) & (nearest[..., 2:] > 0) & (share > 0)
+    out = nearest * (radius / np.maximum(distance, 1e-9) - 1)
+    return np.where(inside, out / np.maximum(share, SHORTEST), 0.0)
+
+
+@lru_cache(maxsize=4)
+def _spread(model: MorphableModel) -> sp.csr_array:
+    """Mean over the neighbours of each vertex."""
+    A = sp.csr_array(adjacency(model.faces, len(model.mean)), dtype=float)
+    return sp.csr_array(sp.diags_array(1 / np.maximum(A.sum(1), 1)) @ A)
