@@ -66,7 +66,7 @@ def cleared(start: np.ndarray, way: np.ndarray, radius: float, spread: sp.csr_ar
     """
     change = np.zeros(way.shape)
     for k in range(ROUNDS):
-        lack = _lack(start, way + change, radius)
+        lack = shortfall(start, way + change, radius)
         if not lack.any():
             break
         change += lack
@@ -77,7 +77,7 @@ def cleared(start: np.ndarray, way: np.ndarray, radius: float, spread: sp.csr_ar
     return way + change
 
 
-def _lack(start: np.ndarray, way: np.ndarray, radius: float) -> np.ndarray:
+def shortfall(start: np.ndarray, way: np.ndarray, radius: float) -> np.ndarray:
     """What the ends of ways (..., 3) lack for their nearest points in front to be ``radius`` from the origin."""
     length2 = np.maximum((way**2).sum(-1), 1e-12)
     share = np.clip(-(start * way).sum(-1) / length2, 0.0, 1.0)[..., None]

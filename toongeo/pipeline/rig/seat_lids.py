@@ -6,13 +6,16 @@ import time
 import numpy as np
 
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.eye_patch import eye_patch
+from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes, clearances
 from toongeo.pipeline.rig.lid_rings import lid_rings
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.protocols import HeadCamera
 
-CLEARANCE = 0.04  # of the radius: how far the skin around the lids' edges stays off
-ROUNDS = 4  # of laying onto the eyeball what is still inside
+SKIN = 0.03  # of the radius: how far off the eyeball the skin around the lids' edges stays
+GAPS = (0.015, 0.07)  # of the radius: how far off the lids' edges lie, at least and at most
+RELIEF = 0.03  # of the radius: over which the edges move alike
+ROUNDS = 5  # of laying onto the eyeball what is still inside
 GRAZING = 0.25  # cosine at the sphere below which a line of sight is taken to miss it
 
 
@@ -20,7 +23,8 @@ def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     """Bend the neutral lids onto the eyeballs, along the lines of sight of the picture.
 
     The edges of the lids come to lie where :func:`~toongeo.pipeline.rig.fit_eyes.clearances` says, and the skin around
-    them follows by Laplacian deformation and stays outside. Only the depth changes: in the picture no vertex moves.
+    them follows by Laplacian deformation and stays outside. Only the depth changes: in the picture the face stays as
+    it was aligned.
 
     Parameters
     ----------
@@ -32,39 +36,74 @@ def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     Returns
     -------
     Rig
-        A new one; only the neutral face differs, and only before the eyes.
+        A new one; only the neutral face differs, and only around the eyes.
     """
     started = time.perf_counter()
-    V, camera = rig.neutral.copy(), face.camera
-    px, depth = camera.project(V), camera.depth(V)
-    sight = camera.unproject(px, depth + 1.0) - V  # one mm of depth
+    V, skin = rig.neutral, face.region("skin")
     for side, name in enumerate(SIDES):
         centre, radius = eyes.centres[side], eyes.radii[side]
-        rings, patch = lid_rings(face.model, name), eye_patch(face.model, name)
-        off = np.full(len(V), CLEARANCE)
-        off[rings.vertices] = clearances(rings)
-        moves = _to_sphere(V - centre, sight, radius * (1 + off))
-        anchors = rings.vertices
-        for _ in range(ROUNDS):
-            bent = V.copy()
-            bent[patch.vertices] = patch.pulled(V, anchors, V[anchors] + moves[anchors, None] * sight[anchors])
-            bent = camera.unproject(px, camera.depth(bent))
-            inside = np.linalg.norm(bent - centre, axis=1) < radius * (1 + off)
-            below = patch.vertices[inside[patch.vertices]]
-            anchors = np.union1d(anchors, below)
-        V = bent
-    neutral = V
-    report = {"seconds": rig.report["seconds"] + time.perf_counter() - started}
-    return dataclasses.replace(rig, neutral=neutral, report=report)
+        rings = lid_rings(face.model, name)
+        sight = face.camera.unproject(face.project(V), face.camera.depth(V) + 1.0) - V  # one mm of depth
+        moves = _to_sphere(V - centre, sight, np.full(len(V), radius * (1 + SKIN)), miss=-np.inf)
+        at = rings.vertices
+        moves[at] = _edge_moves(
+            face.camera.view(V[at])[:, :2], V[at] - centre, sight[at], radius, clearances(rings)
+        )
+        V = _bent(face.camera, eye_patch(face.model, name), V, at, moves)
+        beneath = skin & (np.linalg.norm(V - centre, axis=1) < radius * (1 + GAPS[0]))
+        V = V + np.where(beneath[:, None], _outwards(V - centre, radius * (1 + GAPS[0])), 0.0)
+    report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
+    return dataclasses.replace(rig, neutral=V, report=report)
 
 
-def _to_sphere(offset: np.ndarray, sight: np.ndarray, radius: np.ndarray) -> np.ndarray:
+def _bent(camera: HeadCamera, patch: EyePatch, V: np.ndarray, edges: np.ndarray, moves: np.ndarray) -> np.ndarray:
+    """Vertices (n, 3) with the lids' edges moved in depth by their ``moves`` (n,), and skin by what it lacks."""
+    px, depth = camera.project(V), camera.depth(V)
+    anchors = edges
+    for _ in range(ROUNDS):
+        targets = camera.unproject(px[anchors], depth[anchors] + moves[anchors])
+        pulled = patch.pulled(V, anchors, targets)
+        bent = V.copy()
+        bent[patch.vertices] = camera.unproject(px[patch.vertices], camera.depth(pulled))
+        lacks = camera.depth(bent) - depth < moves
+        beneath = np.setdiff1d(patch.vertices[lacks[patch.vertices]], anchors)
+        if not len(beneath):
+            break
+        anchors = np.union1d(anchors, beneath)
+    return bent
+
+
+def _edge_moves(
+    view: np.ndarray, offset: np.ndarray, sight: np.ndarray, radius: float, off: np.ndarray
+) -> np.ndarray:
+    """Steps (k,) along the lines of sight that lay the lids' edges onto the eyeball and keep their relief.
+
+    Vertices that are close to each other in the picture, ``view`` (k, 2) in mm, move alike: where lids are nearly shut,
+    the one that lay before the other stays there.
+    """
+    distance2 = ((view[:, None] - view) ** 2).sum(2)
+    weights = np.exp(-0.5 * distance2 / (RELIEF * radius) ** 2)
+    moves = weights @ _to_sphere(offset, sight, radius * (1 + off)) / weights.sum(1)
+    least, most = (_to_sphere(offset, sight, np.full(len(off), radius * (1 + gap))) for gap in GAPS)
+    return np.clip(moves, least, most)
+
+
+def _to_sphere(
+    offset: np.ndarray, sight: np.ndarray, radius: np.ndarray, miss: float | None = None
+) -> np.ndarray:
     """Steps (k,) along lines of sight (k, 3) that bring offsets (k, 3) from a centre onto the front of a sphere.
 
-    A line that misses the sphere, or nearly, is followed to where it comes nearest to being that far from the centre.
+    A line that misses the sphere, or nearly, is followed to just before its middle, or the step is ``miss``.
     """
     length = np.linalg.norm(sight, axis=1)
     along = (offset * sight).sum(1) / length
-    beside = (offset**2).sum(1) - along**2
-    ahead = np.sqrt(np.maximum(radius**2 - beside, (GRAZING * radius) ** 2))
-    return np.asarray((ahead - along) / length)
+    beside2 = (offset**2).sum(1) - along**2
+    depth2, least2 = radius**2 - beside2, (GRAZING * radius) ** 2
+    steps = (np.sqrt(np.maximum(depth2, least2)) - along) / length
+    return steps if miss is None else np.where(depth2 < least2, miss, steps)
+
+
+def _outwards(offset: np.ndarray, radius: float) -> np.ndarray:
+    """Shifts (k, 3) that bring offsets (k, 3) from a centre out to a sphere."""
+    distance = np.linalg.norm(offset, axis=1, keepdims=True)
+    return np.asarray(offset * (radius / np.maximum(distance, 1e-9) - 1))
