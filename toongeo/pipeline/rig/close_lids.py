@@ -7,16 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.clear_lids import CLEARANCE, shortfall
+from toongeo.pipeline.rig.clear_lids import CLEARANCE
 from toongeo.pipeline.rig.eye_patch import eye_patch
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
-from toongeo.pipeline.rig.lid_rings import lid_rings
+from toongeo.pipeline.rig.lid_rings import along, at_shares, lid_rings
 from toongeo.pipeline.rig.rig import Rig
 
 TRAVEL = np.radians(40.0)  # about the eyeball: what is more than this the lower lid takes over, up to half of the way
 OVERLAP, LIFT = 0.03, 0.03  # of the radius: by how much the upper lid hangs over the lower one, and before it
 TAPER = 0.12  # of the way from corner to corner over which both die out
-ROUNDS = 8  # of moving the meeting line out
+FREE = 5  # columns at each corner
+RESTING = 1.06  # radii from the centre: as far out as the transfer may leave the lower lid
+STEEPEST = np.radians(60.0)  # beyond which a meeting line farther out would not help
 
 
 def close_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
@@ -49,7 +51,9 @@ def close_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         upper, lower = _met(start[rings.upper], start[rings.lower], end[rings.lower], eyes.radii[side])
         closed = np.empty_like(end)
         closed[rings.lower], closed[rings.upper] = lower, upper
-        shape = patch.pulled(end, rings.vertices, closed[rings.vertices])
+        # Towards the corners the outer rows are left to follow: those of the two lids share the corner's few vertices.
+        held = np.unique(np.r_[rings.upper[0], rings.lower[0], rings.upper[1:, FREE:-FREE].ravel(), rings.lower[1:, FREE:-FREE].ravel()])
+        shape = patch.pulled(end, held, closed[held])
         deltas[blink, patch.vertices] = shape - start[patch.vertices]
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, deltas=deltas, report=report)
@@ -60,28 +64,35 @@ def _met(upper: np.ndarray, lower: np.ndarray, ends: np.ndarray, radius: float) 
 
     All are offsets from the eyeball's centre. ``ends`` (3, m, 3) is where the transfer takes the lower lid.
     """
-    at_upper, at_lower = _along(upper[0]), _along(lower[0])
-    start, end = _unit(upper[0]), _unit(_at(at_upper, at_lower, ends[0]))
-    angle = np.arccos(np.clip((start * end).sum(1), -1, 1))
-    share = np.clip((angle - TRAVEL) / np.maximum(angle, 1e-9), 0.0, 0.5)
-    line = _unit(end + share[:, None] * (start - end))
-    down = _unit((lower[0].mean(0) - upper[0].mean(0))[None])[0]
+    at_upper, at_lower = along(upper[0]), along(lower[0])
+    start, end = _unit(upper[0]), _unit(at_shares(at_upper, at_lower, ends[0]))
+    angle = _angle(start, end).max()
+    line = _unit(end + min(0.5, max(0.0, 1 - TRAVEL / angle)) * (start - end))
+    down = _unit(lower[0].mean(0) - upper[0].mean(0))
     taper = np.minimum(1.0, np.minimum(at_upper, 1 - at_upper) / TAPER)[:, None]
-    hanging = _unit(line + OVERLAP * taper * down)
-    reach = np.maximum(np.linalg.norm(_at(at_upper, at_lower, ends[0]), axis=1), 0.0)
-    reach = np.minimum(reach, radius * 1.05)
-    for _ in range(ROUNDS):
-        over = _turned(upper, hanging, (reach + radius * LIFT * taper[:, 0])[:, None])
-        under = _turned(lower, _unit(_at(at_lower, at_upper, line)), _at(at_lower, at_upper, reach[:, None]))
-        lack = [
-            np.linalg.norm(shortfall(rows, target - rows, radius * (1 + CLEARANCE)), axis=2).max(0)
-            for rows, target in ((upper, over), (lower, under))
+    hanging, meeting = _unit(line + OVERLAP * taper * down), _unit(at_shares(at_lower, at_upper, line))
+    rest = np.minimum(np.linalg.norm(ends[0], axis=1), radius * RESTING)
+    reach = np.maximum.reduce(
+        [
+            np.interp(at_upper, at_lower, np.maximum(rest, _passing(lower, meeting, radius))),
+            _passing(upper, hanging, radius),
         ]
-        more = np.maximum(lack[0], np.interp(at_upper, at_lower, lack[1]))
-        if not more.any():
-            break
-        reach = reach + _widened(more)
-    return over, under
+    )
+    reach = _widened(reach)[:, None]
+    over = _turned(upper, hanging, reach + radius * LIFT * taper)
+    return over, _turned(lower, meeting, at_shares(at_lower, at_upper, reach))
+
+
+def _passing(rows: np.ndarray, directions: np.ndarray, radius: float) -> np.ndarray:
+    """How far out in directions (k, 3) straight ways from rows (r, k, 3) must end, to pass by a sphere; (k,).
+
+    A way from a distance A touches the sphere of radius R if it turns by arccos(R / A) up to there, and from there to
+    its end by the rest of the angle.
+    """
+    clear = radius * (1 + CLEARANCE)
+    free = np.arccos(np.clip(clear / np.linalg.norm(rows, axis=2), -1, 1))
+    rest = np.clip(_angle(_unit(rows), directions) - free, 0.0, STEEPEST)
+    return np.asarray((clear / np.cos(rest)).max(0))
 
 
 def _turned(rows: np.ndarray, directions: np.ndarray, reach: np.ndarray) -> np.ndarray:
@@ -102,16 +113,10 @@ def _widened(values: np.ndarray) -> np.ndarray:
     return values
 
 
-def _at(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Rows of values (m, d), given at shares ``known`` (m,) of a rim, at others (k,)."""
-    return np.column_stack([np.interp(at, known, column) for column in values.T])
+def _angle(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Angles between unit vectors (..., 3)."""
+    return np.asarray(np.arccos(np.clip((a * b).sum(-1), -1, 1)))
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))
-
-
-def _along(path: np.ndarray) -> np.ndarray:
-    """Length along a path of points (k, 3) up to each, as a share of the whole."""
-    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
-    return np.asarray(length / length[-1])

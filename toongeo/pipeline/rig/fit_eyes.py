@@ -9,7 +9,7 @@ from toongeo._read_only import read_only
 from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.gaze import gaze_rotation
-from toongeo.pipeline.rig.lid_rings import LidRings, lid_rings
+from toongeo.pipeline.rig.lid_rings import lid_rings
 from toongeo.pipeline.rig.rig import Rig
 
 SIDES = ("left", "right")
@@ -20,12 +20,8 @@ RIM = 0.04  # of the radius: s.d. of the lids' edges about the sphere
 HUBER = 2.0  # s.d. beyond which a vertex pulls with constant force
 RIM_POINTS = 30  # a rim counts as so many independent ones
 FRONT = 0.9  # of the radius: how far from the line of sight the lids' edges may be
-# Of the radius: how far off the eyeball the rows of :class:`LidRings` lie, from the inner edge outwards. The upper lid
-# lies before the lower one, so that it has room to go down, and closed lids keep their order.
-UPPER, LOWER = np.array([0.035, 0.045, 0.055]), np.array([0.02, 0.025, 0.03])
-MARGIN = 0.04  # of the radius: how far other skin should stay off
+OFF = 0.035  # of the radius: how far off the eyeball the lids' edges lie, and other skin at least
 REACH = 2.0  # widths of the opening: skin farther away is not looked at
-CORNER = 4  # columns over which upper and lower become the same towards a corner
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,21 +81,8 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
         rings = lid_rings(face.model, name)
         skin = face.region("skin").copy()
         skin[rings.vertices] = False
-        lids = rig.neutral[rings.vertices], 1 + clearances(rings)
-        centres[side], radii[side] = _sphere(*lids, rig.neutral[skin], axes)
+        centres[side], radii[side] = _sphere(rig.neutral[rings.vertices], rig.neutral[skin], axes)
     return Eyes(centres, radii, face.model.eyes, {"seconds": time.perf_counter() - started})
-
-
-def clearances(rings: LidRings) -> np.ndarray:
-    """How far off the eyeball each of ``rings.vertices`` lies in the neutral face, (k,), of its radius."""
-    off = dict.fromkeys(rings.vertices.tolist(), 0.0)
-    middle = (UPPER + LOWER) / 2
-    for lid, wanted in ((rings.upper, UPPER), (rings.lower, LOWER)):
-        column = np.arange(lid.shape[1])
-        share = np.minimum(1.0, np.minimum(column, column[::-1]) / CORNER)
-        values = middle[:, None] + share * (wanted - middle)[:, None]
-        off.update(zip(lid.ravel().tolist(), values.ravel().tolist(), strict=True))
-    return np.array(list(off.values()))
 
 
 def _line_of_sight(face: AlignedFace) -> np.ndarray:
@@ -109,14 +92,17 @@ def _line_of_sight(face: AlignedFace) -> np.ndarray:
     return np.asarray((near - far) / np.linalg.norm(near - far))
 
 
-def _sphere(points: np.ndarray, ratios: np.ndarray, skin: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, float]:
-    """Centre (3,) and radius of the sphere for lid edges (k, 3), at ``ratios`` of its radius; skin stays outside."""
+def _sphere(points: np.ndarray, skin: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, float]:
+    """Centre (3,) and radius of the sphere for edges of lids (k, 3); skin (m, 3) stays outside where that is possible.
+
+    ``axes`` (a, 3) are directions from which the edges should be seen before the sphere, not beside it.
+    """
     size = float(np.linalg.norm(points[:, None] - points, axis=2).max())
     skin = skin[np.linalg.norm(skin - points.mean(0), axis=1) < REACH * size]
-    wanted = _robust_sphere(points, ratios, _behind(points, USUAL * size), USUAL * size)[1]
+    wanted = _robust_sphere(points, _behind(points, USUAL * size), USUAL * size)[1]
     best, least = (points.mean(0), size), np.inf
     for radius in np.linspace(LEAST, MOST, STEPS) * size:
-        centre, _ = _robust_sphere(points, ratios, _behind(points, radius), radius, skin)
+        centre, _ = _robust_sphere(points, _behind(points, radius), radius, skin)
         offset = points - centre
         beside = np.sqrt(((offset[:, None] - (offset @ axes.T)[..., None] * axes) ** 2).sum(-1)).max() / radius
         through = 1 - np.linalg.norm(skin - centre, axis=1).min() / radius
@@ -134,9 +120,9 @@ def _behind(points: np.ndarray, radius: float) -> np.ndarray:
 
 
 def _robust_sphere(
-    points: np.ndarray, ratios: np.ndarray, centre: np.ndarray, radius: float, skin: np.ndarray | None = None
+    points: np.ndarray, centre: np.ndarray, radius: float, skin: np.ndarray | None = None
 ) -> tuple[np.ndarray, float]:
-    """Sphere from which points (k, 3) lie at ``ratios`` (k,) of its radius, held near a given centre and radius.
+    """Sphere off which points (k, 3) lie by ``OFF`` of its radius, held near a given centre and radius.
 
     With ``skin`` (m, 3), that shall be outside, the radius is as given.
 
@@ -149,15 +135,15 @@ def _robust_sphere(
     free = np.arange(4 if skin is None else 3)
     count = len(points)
     if skin is not None:
-        points, ratios = np.vstack([points, skin]), np.r_[ratios, np.full(len(skin), 1 + MARGIN)]
+        points = np.vstack([points, skin])
     for _ in range(10):
         offset = points - x[:3]
         distance = np.linalg.norm(offset, axis=1)
-        residual = (distance - ratios * x[3]) / (RIM * radius)
+        residual = (distance - (1 + OFF) * x[3]) / (RIM * radius)
         residual[count:] = np.minimum(residual[count:], 0.0)
         weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residual), 1e-12)) * (RIM_POINTS / count)
         weight[count:] *= residual[count:] < 0
-        J = np.column_stack([-offset / distance[:, None], -ratios]) / (RIM * radius)
+        J = np.column_stack([-offset / distance[:, None], np.full(len(points), -1 - OFF)]) / (RIM * radius)
         H = J.T @ (weight[:, None] * J) + np.diag(precision)
         step = J.T @ (weight * residual) + precision * (x - start)
         x[free] -= np.linalg.solve(H[np.ix_(free, free)], step[free])

@@ -81,6 +81,28 @@ def lid_rings(model: MorphableModel, side: str) -> LidRings:
     return LidRings(*(np.ascontiguousarray(half) for half in halves))
 
 
+def along(path: np.ndarray) -> np.ndarray:
+    """Length along a path of points (k, d) up to each, as a share (k,) of the whole."""
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
+    return np.asarray(length / length[-1])
+
+
+def at_shares(shares: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Rows (k, d), at shares (k,) of a path, of values (m, d) that are given at others (m,)."""
+    return np.column_stack([np.interp(shares, known, column) for column in values.T])
+
+
+def opening_height(upper: np.ndarray, lower: np.ndarray) -> float:
+    """Greatest distance of points at the same share of an upper (k, 3) and a lower rim (m, 3).
+
+    Examples
+    --------
+    >>> opening_height(np.array([[-2.0, 0, 0], [0, 2, 0], [2, 0, 0]]), np.array([[-2.0, 0, 0], [0, -1, 0], [2, 0, 0]]))
+    3.0
+    """
+    return float(np.linalg.norm(upper - at_shares(along(upper), along(lower), lower), axis=1).max())
+
+
 def _loop(along: dict[int, list[int]]) -> list[int]:
     """The vertices of a cycle in order, from their neighbours on it; shorter than all of them if it is none."""
     start = min(along)

@@ -7,11 +7,17 @@ import numpy as np
 
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch
-from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes, clearances
-from toongeo.pipeline.rig.lid_rings import lid_rings
+from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
+from toongeo.pipeline.rig.lid_rings import LidRings, lid_rings, opening_height
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.protocols import HeadCamera
 
+# Of the radius: how far off the eyeball the rows of LidRings lie, from the inner edge outwards. The upper lid lies
+# before the lower one, so that closed lids keep their order, and lids that have far to go lie farther off: a straight
+# way around the eyeball sets out the flatter.
+UPPER, LOWER, FAR = np.array([[0.03, 0.04, 0.05], [0.02, 0.025, 0.03], [0.055, 0.06, 0.065]])
+OPEN = np.radians([40.0, 80.0])  # about the eyeball: openings from and to which lids have farther and farther to go
+CORNER = 4  # columns over which upper and lower become the same towards a corner
 SKIN = 0.03  # of the radius: how far off the eyeball the skin around the lids' edges stays
 GAPS = (0.015, 0.07)  # of the radius: how far off the lids' edges lie, at least and at most
 RELIEF = 0.03  # of the radius: over which the edges move alike
@@ -22,8 +28,8 @@ GRAZING = 0.25  # cosine at the sphere below which a line of sight is taken to m
 def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     """Bend the neutral lids onto the eyeballs, along the lines of sight of the picture.
 
-    The edges of the lids come to lie where :func:`~toongeo.pipeline.rig.fit_eyes.clearances` says, and the skin around
-    them follows by Laplacian deformation and stays outside. Only the depth changes: in the picture the face stays as
+    The edges of the lids come to lie a few hundredths of the radius off the sphere, and the skin around them follows by
+    Laplacian deformation and stays outside. Only the depth changes: in the picture the face stays as
     it was aligned.
 
     Parameters
@@ -46,14 +52,26 @@ def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         sight = face.camera.unproject(face.project(V), face.camera.depth(V) + 1.0) - V  # one mm of depth
         moves = _to_sphere(V - centre, sight, np.full(len(V), radius * (1 + SKIN)), miss=-np.inf)
         at = rings.vertices
-        moves[at] = _edge_moves(
-            face.camera.view(V[at])[:, :2], V[at] - centre, sight[at], radius, clearances(rings)
-        )
+        off = _clearances(rings, V, radius)
+        moves[at] = _edge_moves(face.camera.view(V[at])[:, :2], V[at] - centre, sight[at], radius, off)
         V = _bent(face.camera, eye_patch(face.model, name), V, at, moves)
         beneath = skin & (np.linalg.norm(V - centre, axis=1) < radius * (1 + GAPS[0]))
         V = V + np.where(beneath[:, None], _outwards(V - centre, radius * (1 + GAPS[0])), 0.0)
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, neutral=V, report=report)
+
+
+def _clearances(rings: LidRings, V: np.ndarray, radius: float) -> np.ndarray:
+    """How far off the eyeball each of ``rings.vertices`` shall lie, (k,), of its radius."""
+    height = opening_height(V[rings.upper[0]], V[rings.lower[0]])
+    far = np.interp(2 * np.arcsin(min(1.0, height / (2 * radius))), OPEN, [0.0, 1.0])
+    off, middle = np.zeros(len(V)), (UPPER + LOWER) / 2
+    for lid, wanted in ((rings.upper, UPPER), (rings.lower, LOWER)):
+        column = np.arange(lid.shape[1])
+        share = np.minimum(1.0, np.minimum(column, column[::-1]) / CORNER)
+        near = middle[:, None] + share * (wanted - middle)[:, None]
+        off[lid] = near + far * (FAR[:, None] - near)
+    return off[rings.vertices]
 
 
 def _bent(camera: HeadCamera, patch: EyePatch, V: np.ndarray, edges: np.ndarray, moves: np.ndarray) -> np.ndarray:
