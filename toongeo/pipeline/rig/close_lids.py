@@ -14,7 +14,7 @@ from toongeo.pipeline.rig.lid_rings import along, at_shares, lid_rings
 from toongeo.pipeline.rig.rig import Rig
 
 TRAVEL = np.radians(40.0)  # about the eyeball: what is more than this the lower lid takes over, up to half of the way
-OVERLAP, LIFT = 0.03, 0.03  # of the radius: by how much the upper lid hangs over the lower one, and before it
+OVERLAP, LIFT = 0.02, 0.04  # of the radius: by how much the upper lid hangs over the lower one, and before it
 TAPER = 0.12  # of the way from corner to corner over which both die out
 FREE = 5  # columns at each corner
 RESTING = 1.06  # radii from the centre: as far out as the transfer may leave the lower lid
@@ -79,8 +79,9 @@ def _met(upper: np.ndarray, lower: np.ndarray, ends: np.ndarray, radius: float) 
         ]
     )
     reach = _widened(reach)[:, None]
-    over = _turned(upper, hanging, reach + radius * LIFT * taper)
-    return over, _turned(lower, meeting, at_shares(at_lower, at_upper, reach))
+    under = _turned(lower, meeting, at_shares(at_lower, at_upper, reach))
+    before = np.interp(at_upper, at_lower, np.linalg.norm(under, axis=2).max(0))[:, None] - reach
+    return _turned(upper, hanging, reach + taper * (before + radius * LIFT)), under
 
 
 def _passing(rows: np.ndarray, directions: np.ndarray, radius: float) -> np.ndarray:

@@ -63,3 +63,15 @@ def eye_patch(model: MorphableModel, side: str) -> EyePatch:
     used, faces = np.unique(model.faces[inside], return_inverse=True)
     rest = ~inside & ~model.region(f"socket_{side}")[model.faces].any(1)
     return EyePatch(used, faces.reshape(-1, 3), np.intersect1d(used, model.faces[rest]))
+
+
+def sagitta(model: MorphableModel, V: np.ndarray) -> np.ndarray:
+    """Squared length / 8 of the longest edge at each vertex, (n,), mm^2.
+
+    Divided by the radius of a sphere it is how far such an edge with both ends on the sphere dips into it.
+    """
+    edges = model.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    length2 = ((V[edges[:, 0]] - V[edges[:, 1]]) ** 2).sum(1)
+    longest = np.zeros(len(V))
+    np.maximum.at(longest, edges.ravel(), np.repeat(length2, 2))
+    return longest / 8

@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch
+from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch, sagitta
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
 from toongeo.pipeline.rig.lid_rings import LidRings, lid_rings, opening_height
 from toongeo.pipeline.rig.rig import Rig
@@ -45,7 +45,7 @@ def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         A new one; only the neutral face differs, and only around the eyes.
     """
     started = time.perf_counter()
-    V, skin = rig.neutral, face.region("skin")
+    V, skin, dips = rig.neutral, face.region("skin"), sagitta(face.model, rig.neutral)
     for side, name in enumerate(SIDES):
         centre, radius = eyes.centres[side], eyes.radii[side]
         rings = lid_rings(face.model, name)
@@ -55,8 +55,7 @@ def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         off = _clearances(rings, V, radius)
         moves[at] = _edge_moves(face.camera.view(V[at])[:, :2], V[at] - centre, sight[at], radius, off)
         V = _bent(face.camera, eye_patch(face.model, name), V, at, moves)
-        beneath = skin & (np.linalg.norm(V - centre, axis=1) < radius * (1 + GAPS[0]))
-        V = V + np.where(beneath[:, None], _outwards(V - centre, radius * (1 + GAPS[0])), 0.0)
+        V = V + np.where(skin[:, None], _outwards(V - centre, radius * (1 + GAPS[0]) + dips / radius), 0.0)
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, neutral=V, report=report)
 
@@ -121,7 +120,7 @@ def _to_sphere(
     return steps if miss is None else np.where(depth2 < least2, miss, steps)
 
 
-def _outwards(offset: np.ndarray, radius: float) -> np.ndarray:
-    """Shifts (k, 3) that bring offsets (k, 3) from a centre out to a sphere."""
-    distance = np.linalg.norm(offset, axis=1, keepdims=True)
-    return np.asarray(offset * (radius / np.maximum(distance, 1e-9) - 1))
+def _outwards(offset: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Shifts (k, 3) that bring offsets (k, 3) from a centre out to a distance (k,), where they are nearer."""
+    distance = np.linalg.norm(offset, axis=1)
+    return np.asarray(np.maximum(radius / np.maximum(distance, 1e-9) - 1, 0.0)[:, None] * offset)
