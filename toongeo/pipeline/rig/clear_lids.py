@@ -47,6 +47,7 @@ def clear_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         near = np.flatnonzero(skin & (np.linalg.norm(offset, axis=1) < NEAR * eyes.radii[side]))
         spread = _spread(face.model)[near][:, near]
         clear = eyes.radii[side] * (1 + CLEARANCE + dips[near] / eyes.radii[side] ** 2)
+        clear = np.minimum(clear, np.linalg.norm(offset[near], axis=1))
         for shapes in (deltas, gaze):
             moved = np.flatnonzero(np.any(shapes[:, near], axis=(1, 2)))
             for k in moved:

@@ -10,7 +10,7 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.clear_lids import CLEARANCE
 from toongeo.pipeline.rig.eye_patch import eye_patch
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
-from toongeo.pipeline.rig.lid_rings import along, at_shares, lid_rings
+from toongeo.pipeline.rig.lid_rings import LidRings, along, at_shares, lid_rings, opening_height
 from toongeo.pipeline.rig.rig import Rig
 
 TRAVEL = np.radians(40.0)  # about the eyeball: what is more than this the lower lid takes over, up to half of the way
@@ -47,6 +47,7 @@ def close_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     for side, name in enumerate(SIDES):
         blink = rig.names.index(f"eyeBlink{name.capitalize()}")
         rings, patch = lid_rings(face.model, name), eye_patch(face.model, name)
+        deltas[blink] *= _gain(rig.neutral, deltas[blink], rings)
         start, end = (V - eyes.centres[side] for V in (rig.neutral, rig.neutral + deltas[blink]))
         upper, lower = _met(start[rings.upper], start[rings.lower], end[rings.lower], eyes.radii[side])
         closed = np.empty_like(end)
@@ -57,6 +58,13 @@ def close_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         deltas[blink, patch.vertices] = shape - start[patch.vertices]
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, deltas=deltas, report=report)
+
+
+def _gain(V: np.ndarray, blink: np.ndarray, rings: LidRings) -> float:
+    """How much of a blink is enough: that of the template would take the lids of a narrow eye through each other."""
+    upper, lower = rings.upper[0], rings.lower[0]
+    closing = blink[upper] - at_shares(along(V[upper]), along(V[lower]), blink[lower])
+    return min(1.0, opening_height(V[upper], V[lower]) / max(float(np.linalg.norm(closing, axis=1).max()), 1e-9))
 
 
 def _met(upper: np.ndarray, lower: np.ndarray, ends: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
