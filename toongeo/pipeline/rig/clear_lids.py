@@ -15,7 +15,10 @@ from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
 from toongeo.pipeline.rig.rig import Rig
 
 CLEARANCE = 0.01  # of the radius: how far skin stays off an eyeball on its way
-NEAR = 3.0  # radii from an eyeball's centre: skin farther from it does not come to it
+NEAR = 2.0  # radii from an eyeball's centre: skin farther from it does not come to it
+SHUT = 0.05  # of the radius: how far skin stays off when the eye is shut
+PAIRED_CLEARANCE = 0.03  # of the radius: what an expression leaves of it
+PAIRED = 2.0  # from closed lids an expression must be clear up to this weight, so that two at once are
 ROUNDS = 6  # of pushing out and smoothing
 SHORTEST = 0.05  # of the way: what is inside earlier than that is pushed as if it were there
 
@@ -42,16 +45,29 @@ def clear_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     started = time.perf_counter()
     deltas, gaze, skin = rig.deltas.copy(), rig.gaze.copy(), face.region("skin")
     dips = sagitta(face.model, rig.neutral)
-    for side in range(len(SIDES)):
-        offset = rig.neutral - eyes.centres[side]
-        near = np.flatnonzero(skin & (np.linalg.norm(offset, axis=1) < NEAR * eyes.radii[side]))
+    for side, name in enumerate(SIDES):
+        radius, offset = eyes.radii[side], rig.neutral - eyes.centres[side]
+        distance = np.linalg.norm(offset, axis=1)
+        near = np.flatnonzero(skin & (distance < NEAR * radius))
         spread = _spread(face.model)[near][:, near]
-        clear = eyes.radii[side] * (1 + CLEARANCE + dips[near] / eyes.radii[side] ** 2)
-        clear = np.minimum(clear, np.linalg.norm(offset[near], axis=1))
-        for shapes in (deltas, gaze):
-            moved = np.flatnonzero(np.any(shapes[:, near], axis=(1, 2)))
-            for k in moved:
-                shapes[k, near] = cleared(offset[near], shapes[k, near], clear, spread)
+        clear = np.minimum(radius * (1 + CLEARANCE) + dips[near] / radius, distance[near])
+        blink = rig.names.index(f"eyeBlink{name.capitalize()}")
+        order = [blink, *(k for k in range(len(deltas)) if k != blink)]
+        shut = None
+        for shapes, k in (*((deltas, k) for k in order), *((gaze, k) for k in range(len(gaze)))):
+            way = shapes[k, near].astype(float)
+            if not way.any():
+                continue
+            way = cleared(offset[near], way, clear, spread)
+            if shut is not None:
+                way = cleared(shut, way * PAIRED, clear_shut, spread) / PAIRED
+            shapes[k, near] = way
+            if shapes is deltas and k == blink:
+                stretched = sagitta(face.model, rig.neutral + deltas[blink])[near] / radius
+                shut = offset[near] + way
+                shut += outwards(shut, radius * (1 + SHUT) + stretched)
+                shapes[k, near] = shut - offset[near]
+                clear_shut = np.minimum(radius * (1 + PAIRED_CLEARANCE) + stretched, np.linalg.norm(shut, axis=1))
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
 
@@ -98,3 +114,9 @@ def _spread(model: MorphableModel) -> sp.csr_array:
     """Mean over the neighbours of each vertex."""
     A = sp.csr_array(adjacency(model.faces, len(model.mean)), dtype=float)
     return sp.csr_array(sp.diags_array(1 / np.maximum(A.sum(1), 1)) @ A)
+
+
+def outwards(offset: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Shifts (k, 3) that bring offsets (k, 3) from a centre out to a distance (k,), where they are nearer."""
+    distance = np.linalg.norm(offset, axis=1)
+    return np.asarray(np.maximum(radius / np.maximum(distance, 1e-9) - 1, 0.0)[:, None] * offset)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.clear_lids import CLEARANCE
+from toongeo.pipeline.rig.clear_lids import CLEARANCE, SHUT
 from toongeo.pipeline.rig.eye_patch import eye_patch
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
 from toongeo.pipeline.rig.lid_rings import LidRings, along, at_shares, lid_rings, opening_height
@@ -17,7 +17,7 @@ TRAVEL = np.radians(40.0)  # about the eyeball: what is more than this the lower
 OVERLAP, LIFT = 0.02, 0.04  # of the radius: by how much the upper lid hangs over the lower one, and before it
 TAPER = 0.12  # of the way from corner to corner over which both die out
 FREE = 5  # columns at each corner
-RESTING = 1.06  # radii from the centre: as far out as the transfer may leave the lower lid
+RESTING = (0.01, 0.03)  # of the radius: least and most that the transfer may leave the lids farther off when shut
 STEEPEST = np.radians(60.0)  # beyond which a meeting line farther out would not help
 
 
@@ -79,7 +79,7 @@ def _met(upper: np.ndarray, lower: np.ndarray, ends: np.ndarray, radius: float) 
     down = _unit(lower[0].mean(0) - upper[0].mean(0))
     taper = np.minimum(1.0, np.minimum(at_upper, 1 - at_upper) / TAPER)[:, None]
     hanging, meeting = _unit(line + OVERLAP * taper * down), _unit(at_shares(at_lower, at_upper, line))
-    rest = np.minimum(np.linalg.norm(ends[0], axis=1), radius * RESTING)
+    rest = np.clip(np.linalg.norm(ends[0], axis=1), *(radius * (1 + SHUT + np.array(RESTING))))
     reach = np.maximum.reduce(
         [
             np.interp(at_upper, at_lower, np.maximum(rest, _passing(lower, meeting, radius))),

@@ -6,6 +6,7 @@ import time
 import numpy as np
 
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.rig.clear_lids import outwards
 from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch, sagitta
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
 from toongeo.pipeline.rig.lid_rings import LidRings, lid_rings, opening_height
@@ -55,7 +56,7 @@ def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         off = _clearances(rings, V, radius)
         moves[at] = _edge_moves(face.camera.view(V[at])[:, :2], V[at] - centre, sight[at], radius, off)
         V = _bent(face.camera, eye_patch(face.model, name), V, at, moves)
-        V = V + np.where(skin[:, None], _outwards(V - centre, radius * (1 + GAPS[0]) + dips / radius), 0.0)
+        V = V + np.where(skin[:, None], outwards(V - centre, radius * (1 + GAPS[0]) + dips / radius), 0.0)
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, neutral=V, report=report)
 
@@ -118,9 +119,3 @@ def _to_sphere(
     depth2, least2 = radius**2 - beside2, (GRAZING * radius) ** 2
     steps = (np.sqrt(np.maximum(depth2, least2)) - along) / length
     return steps if miss is None else np.where(depth2 < least2, miss, steps)
-
-
-def _outwards(offset: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Shifts (k, 3) that bring offsets (k, 3) from a centre out to a distance (k,), where they are nearer."""
-    distance = np.linalg.norm(offset, axis=1)
-    return np.asarray(np.maximum(radius / np.maximum(distance, 1e-9) - 1, 0.0)[:, None] * offset)
