@@ -16,15 +16,12 @@ from toongeo.pipeline import (
     bake_eyes,
     bake_texture,
     build_rig,
-    clear_lids,
-    close_lids,
     fit_3dmm,
-    fit_eyes,
+    fit_lids,
     parse_face,
     photometric_fit,
     snap_eyes,
 )
-from toongeo.pipeline.rig.line_sockets import line_sockets
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
 
@@ -92,10 +89,9 @@ def make_avatar(
     clock.start("align")
     face = align_face(fit, landmarks)
     clock.start("rig")
-    rig = close_lids(face, build_rig(face))
+    rig = build_rig(face)
     clock.start("eyes")
-    eyes = fit_eyes(face, rig)
-    rig = line_sockets(face, clear_lids(face, rig, eyes), eyes)
+    rig, eyes = fit_lids(face, rig)
     face = dataclasses.replace(face, vertices=rig.neutral)
     clock.start("texture")
     texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))

@@ -17,6 +17,7 @@ from toongeo.pipeline.rig.build_rig import build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
 from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
+from toongeo.pipeline.rig.fit_lids import fit_lids
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
 from toongeo.pipeline.texture.bake_texture import bake_texture
@@ -42,6 +43,7 @@ __all__ = [
     "diffuse_texture",
     "fit_3dmm",
     "fit_eyes",
+    "fit_lids",
     "train_ridge_regressor",
     "parse_face",
     "photometric_fit",

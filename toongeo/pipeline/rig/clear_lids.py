@@ -49,7 +49,7 @@ def clear_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         radius, offset = eyes.radii[side], rig.neutral - eyes.centres[side]
         distance = np.linalg.norm(offset, axis=1)
         near = np.flatnonzero(skin & (distance < NEAR * radius))
-        spread = _spread(face.model)[near][:, near]
+        spread = neighbour_means(face.model)[near][:, near]
         clear = np.minimum(radius * (1 + CLEARANCE) + dips[near] / radius, distance[near])
         blink = rig.names.index(f"eyeBlink{name.capitalize()}")
         order = [blink, *(k for k in range(len(deltas)) if k != blink)]
@@ -110,7 +110,7 @@ def shortfall(start: np.ndarray, way: np.ndarray, radius: np.ndarray) -> np.ndar
 
 
 @lru_cache(maxsize=4)
-def _spread(model: MorphableModel) -> sp.csr_array:
+def neighbour_means(model: MorphableModel) -> sp.csr_array:
     """Mean over the neighbours of each vertex."""
     A = sp.csr_array(adjacency(model.faces, len(model.mean)), dtype=float)
     return sp.csr_array(sp.diags_array(1 / np.maximum(A.sum(1), 1)) @ A)

@@ -8,6 +8,7 @@ import numpy as np
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.eye_patch import eye_patch
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
+from toongeo.pipeline.rig.lid_closure import across_opening, opening_gaps
 from toongeo.pipeline.rig.lid_rings import LidRings, along, at_shares, lid_rings
 from toongeo.pipeline.rig.rig import Rig
 
@@ -56,8 +57,8 @@ def part_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
 def _parting(rings: LidRings, V: np.ndarray, shape: np.ndarray, least: float) -> np.ndarray:
     """Change (n, 3) of a shape that leaves an opening of ``least`` mm, or what there was; zero off the lids' edges."""
     at_upper, at_lower = along(V[rings.upper[0]]), along(V[rings.lower[0]])
-    up = _up(rings, V)
-    opening = (V[rings.upper[0]] - at_shares(at_upper, at_lower, V[rings.lower[0]])) @ up
+    up = across_opening(rings, V)
+    opening = opening_gaps(rings, V, up)
     widening = (shape[rings.upper[0]] - at_shares(at_upper, at_lower, shape[rings.lower[0]])) @ up
     taper = np.minimum(1.0, np.minimum(at_upper, 1 - at_upper) / TAPER)
     lack = taper * np.maximum(0.0, -np.maximum(opening - least, 0.0) - widening)
@@ -66,12 +67,3 @@ def _parting(rings: LidRings, V: np.ndarray, shape: np.ndarray, least: float) ->
         change[rings.upper] = 0.5 * lack[:, None] * up
         change[rings.lower] = -0.5 * np.interp(at_lower, at_upper, lack)[:, None] * up
     return change
-
-
-def _up(rings: LidRings, V: np.ndarray) -> np.ndarray:
-    """Unit vector (3,) across the opening, in the plane of the lids' edges, from the lower to the upper lid."""
-    middle = V[rings.vertices].mean(0)
-    spread = np.linalg.svd(V[rings.vertices] - middle, full_matrices=False)[2]
-    corners = V[rings.upper[0, -1]] - V[rings.upper[0, 0]]
-    up = np.cross(spread[2], corners / np.linalg.norm(corners))
-    return np.asarray(up * np.sign(up[1] or 1.0) / np.linalg.norm(up))
