@@ -12,10 +12,12 @@ from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
+    aim_eyes,
     align_face,
     bake_eyes,
     bake_texture,
     build_rig,
+    find_irises,
     fit_3dmm,
     fit_lids,
     parse_face,
@@ -94,7 +96,10 @@ def make_avatar(
     rig, eyes = fit_lids(face, rig)
     face = dataclasses.replace(face, vertices=rig.neutral)
     clock.start("texture")
-    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
+    irises = find_irises(img, landmarks)
+    eyes = aim_eyes(face, eyes, irises)
+    texture = bake_texture(img, face, rig=rig, size=texture_size, parse=parse)
+    texture = bake_eyes(img, face, eyes, texture, irises)
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(

@@ -19,9 +19,11 @@ from toongeo.pipeline.rig.close_lids import close_lids
 from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
 from toongeo.pipeline.rig.fit_lids import fit_lids
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.texture.aim_eyes import aim_eyes
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
 from toongeo.pipeline.texture.bake_texture import bake_texture
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
+from toongeo.pipeline.texture.find_irises import Iris, find_irises
 from toongeo.pipeline.texture.texture_coordinates import texture_coordinates
 
 __all__ = [
@@ -33,7 +35,10 @@ __all__ = [
     "RidgeRegressor",
     "PhotometricOptions",
     "Rig",
+    "Iris",
     "adjust_coefficients",
+    "aim_eyes",
+    "find_irises",
     "align_face",
     "bake_eyes",
     "bake_texture",

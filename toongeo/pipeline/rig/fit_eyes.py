@@ -8,7 +8,7 @@ import numpy as np
 from toongeo._read_only import read_only
 from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.gaze import gaze_rotation
+from toongeo.pipeline.rig.gaze import GAZE_NAMES, gaze_rotation
 from toongeo.pipeline.rig.lid_rings import lid_rings
 from toongeo.pipeline.rig.rig import Rig
 
@@ -33,6 +33,8 @@ class Eyes:
     centres : (2, 3) float64, mm, model frame
     radii : (2,) float64, mm
     templates : left and right EyeballTemplate
+    pose : (8,) float64
+        Weights of ``GAZE_NAMES`` with which the eyes look as in the picture.
     report : dict
         ``seconds``.
     """
@@ -40,16 +42,21 @@ class Eyes:
     centres: np.ndarray
     radii: np.ndarray
     templates: tuple[EyeballTemplate, ...]
+    pose: np.ndarray
     report: dict[str, float]
 
     def __post_init__(self) -> None:
-        read_only(self, "centres", "radii")
+        read_only(self, "centres", "radii", "pose")
 
     def vertices(self, side: int, rotation: np.ndarray | None = None) -> np.ndarray:
         """Vertices (k, 3), mm, of eyeball 0 (left) or 1 (right), turned by a rotation (3, 3) of the gaze."""
         unit = self.templates[side].vertices
         turned = unit if rotation is None else unit @ rotation.T
         return self.centres[side] + self.radii[side] * turned
+
+    def looking_as_drawn(self, side: int) -> np.ndarray:
+        """Vertices (k, 3), mm, of an eyeball that looks as in the picture."""
+        return self.looking(side, dict(zip(GAZE_NAMES, self.pose.tolist(), strict=True)))
 
     def looking(self, side: int, weights: dict[str, float]) -> np.ndarray:
         """Vertices (k, 3), mm, for ``eyeLook*`` weights, which turn the eyeball."""
@@ -82,7 +89,7 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
         skin = face.region("skin").copy()
         skin[rings.vertices] = False
         centres[side], radii[side] = _sphere(rig.neutral[rings.vertices], rig.neutral[skin], axes)
-    return Eyes(centres, radii, face.model.eyes, {"seconds": time.perf_counter() - started})
+    return Eyes(centres, radii, face.model.eyes, np.zeros(len(GAZE_NAMES)), {"seconds": time.perf_counter() - started})
 
 
 def _line_of_sight(face: AlignedFace) -> np.ndarray:

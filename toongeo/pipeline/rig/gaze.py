@@ -35,4 +35,19 @@ def gaze_rotation(side: str, weights: Mapping[str, float]) -> np.ndarray:
     return Rotation.from_euler("YX", [yaw, UPDOWN * (down - up)], degrees=True).as_matrix()
 
 
+def gaze_weights(side: str, direction: np.ndarray) -> dict[str, float]:
+    """Weights in [0, 1] of the four names that turn one eye towards a direction (3,); inverse of the rotation.
+
+    Examples
+    --------
+    >>> {name: round(weight, 3) for name, weight in gaze_weights("left", np.array([0.5, 0, 0.866])).items()}
+    {'eyeLookInLeft': 0.0, 'eyeLookOutLeft': 1.0, 'eyeLookUpLeft': 0.0, 'eyeLookDownLeft': 0.0}
+    """
+    x, y, z = direction / np.linalg.norm(direction)
+    outward = np.rad2deg(np.arctan2(x, z)) / SIDEWAYS * (1 if side == "left" else -1)
+    upward = np.rad2deg(np.arcsin(y)) / UPDOWN
+    weights = np.clip([-outward, outward, upward, -upward], 0, 1).tolist()
+    return dict(zip(gaze_names(side), weights, strict=True))
+
+
 GAZE_NAMES = (*gaze_names("left"), *gaze_names("right"))
