@@ -89,7 +89,7 @@ def _met(upper: np.ndarray, lower: np.ndarray, ends: np.ndarray, radius: float) 
     reach = _widened(reach)[:, None]
     under = _turned(lower, meeting, at_shares(at_lower, at_upper, reach))
     before = np.interp(at_upper, at_lower, np.linalg.norm(under, axis=2).max(0))[:, None] - reach
-    return _turned(upper, hanging, reach + taper * (before + radius * LIFT)), under
+    return _turned(upper, hanging, reach + np.sqrt(taper) * (before + radius * LIFT)), under
 
 
 def _passing(rows: np.ndarray, directions: np.ndarray, radius: float) -> np.ndarray:
