@@ -53,7 +53,11 @@ def close_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         closed = np.empty_like(end)
         closed[rings.lower], closed[rings.upper] = lower, upper
         # Towards the corners the outer rows are left to follow: those of the two lids share the corner's few vertices.
-        held = np.unique(np.r_[rings.upper[0], rings.lower[0], rings.upper[1:, FREE:-FREE].ravel(), rings.lower[1:, FREE:-FREE].ravel()])
+        held = np.unique(
+            np.r_[
+                rings.upper[0], rings.lower[0], rings.upper[1:, FREE:-FREE].ravel(), rings.lower[1:, FREE:-FREE].ravel()
+            ]
+        )
         shape = patch.pulled(end, held, closed[held])
         deltas[blink, patch.vertices] = shape - start[patch.vertices]
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}

@@ -91,9 +91,7 @@ def _bent(camera: HeadCamera, patch: EyePatch, V: np.ndarray, edges: np.ndarray,
     return bent
 
 
-def _edge_moves(
-    view: np.ndarray, offset: np.ndarray, sight: np.ndarray, radius: float, off: np.ndarray
-) -> np.ndarray:
+def _edge_moves(view: np.ndarray, offset: np.ndarray, sight: np.ndarray, radius: float, off: np.ndarray) -> np.ndarray:
     """Steps (k,) along the lines of sight that lay the lids' edges onto the eyeball and keep their relief.
 
     Vertices that are close to each other in the picture, ``view`` (k, 2) in mm, move alike: where lids are nearly shut,
@@ -106,9 +104,7 @@ def _edge_moves(
     return np.clip(moves, least, most)
 
 
-def _to_sphere(
-    offset: np.ndarray, sight: np.ndarray, radius: np.ndarray, miss: float | None = None
-) -> np.ndarray:
+def _to_sphere(offset: np.ndarray, sight: np.ndarray, radius: np.ndarray, miss: float | None = None) -> np.ndarray:
     """Steps (k,) along lines of sight (k, 3) that bring offsets (k, 3) from a centre onto the front of a sphere.
 
     A line that misses the sphere, or nearly, is followed to just before its middle, or the step is ``miss``.

@@ -53,7 +53,7 @@ def unfold_lids(face: AlignedFace, rig: Rig) -> Rig:
             for k in np.flatnonzero(moves):
                 V = rig.neutral + shapes[k]
                 suspects, reach = pairs[_sharp(patch, pairs, V) & ~sharp], REACH
-                for damping in DAMPING:
+                for damping in DAMPING if len(suspects) else ():
                     near = _around(face.model, patch.vertices[patch.faces[suspects]], reach)[patch.vertices] > 0
                     hit = np.setdiff1d(_crossing(patch, V, np.flatnonzero(near[patch.faces].any(1))), crossing)
                     if len(hit) <= ALLOWED:
