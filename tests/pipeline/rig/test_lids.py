@@ -151,7 +151,7 @@ def test_lids_follow_the_gaze(stages, side):
 
 
 def test_only_the_surroundings_of_the_eyes_change(stages):
-    face, before, after, eyes = stages
+    _, before, after, eyes = stages
     distance = np.linalg.norm(before.neutral[:, None] - eyes.centres, axis=2) / eyes.radii
     far = (distance > 3).all(1)
     np.testing.assert_array_equal(after.neutral[far], before.neutral[far])

@@ -2,7 +2,6 @@
 
 import dataclasses
 import time
-from dataclasses import dataclass
 
 import numpy as np
 
