@@ -47,27 +47,20 @@ def clear_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     dips = sagitta(face.model, rig.neutral)
     for side, name in enumerate(SIDES):
         radius, offset = eyes.radii[side], rig.neutral - eyes.centres[side]
-        distance = np.linalg.norm(offset, axis=1)
-        near = np.flatnonzero(skin & (distance < NEAR * radius))
-        spread = neighbour_means(face.model)[near][:, near]
-        clear = np.minimum(radius * (1 + CLEARANCE) + dips[near] / radius, distance[near])
+        near = np.flatnonzero(skin & (np.linalg.norm(offset, axis=1) < NEAR * radius))
+        spread, start = neighbour_means(face.model)[near][:, near], offset[near]
+        clear = np.minimum(radius * (1 + CLEARANCE) + dips[near] / radius, np.linalg.norm(start, axis=1))
         blink = rig.names.index(f"eyeBlink{name.capitalize()}")
-        order = [blink, *(k for k in range(len(deltas)) if k != blink)]
-        shut = None
-        for shapes, k in (*((deltas, k) for k in order), *((gaze, k) for k in range(len(gaze)))):
-            way = shapes[k, near].astype(float)
-            if not way.any():
-                continue
-            way = cleared(offset[near], way, clear, spread)
-            if shut is not None:
-                way = cleared(shut, way * PAIRED, clear_shut, spread) / PAIRED
-            shapes[k, near] = way
-            if shapes is deltas and k == blink:
-                stretched = sagitta(face.model, rig.neutral + deltas[blink])[near] / radius
-                shut = offset[near] + way
-                shut += outwards(shut, radius * (1 + SHUT) + stretched)
-                shapes[k, near] = shut - offset[near]
-                clear_shut = np.minimum(radius * (1 + PAIRED_CLEARANCE) + stretched, np.linalg.norm(shut, axis=1))
+        deltas[blink, near] = cleared(start, deltas[blink, near], clear, spread)
+        stretched = sagitta(face.model, rig.neutral + deltas[blink])[near] / radius
+        shut = start + deltas[blink, near]
+        shut += outwards(shut, radius * (1 + SHUT) + stretched)
+        clear_shut = np.minimum(radius * (1 + PAIRED_CLEARANCE) + stretched, np.linalg.norm(shut, axis=1))
+        for shapes in (deltas, gaze):
+            for k in np.flatnonzero(np.any(shapes[:, near], axis=(1, 2))):
+                way = cleared(start, shapes[k, near], clear, spread)
+                shapes[k, near] = cleared(shut, PAIRED * way, clear_shut, spread) / PAIRED
+        deltas[blink, near] = shut - start
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
 

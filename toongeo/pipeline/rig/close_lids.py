@@ -2,7 +2,6 @@
 
 import dataclasses
 import time
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -53,7 +52,11 @@ def close_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         closed = np.empty_like(end)
         closed[rings.lower], closed[rings.upper] = lower, upper
         # Towards the corners the outer rows are left to follow: those of the two lids share the corner's few vertices.
-        held = np.unique(np.r_[rings.upper[0], rings.lower[0], rings.upper[1:, FREE:-FREE].ravel(), rings.lower[1:, FREE:-FREE].ravel()])
+        held = np.unique(
+            np.r_[
+                rings.upper[0], rings.lower[0], rings.upper[1:, FREE:-FREE].ravel(), rings.lower[1:, FREE:-FREE].ravel()
+            ]
+        )
         shape = patch.pulled(end, held, closed[held])
         deltas[blink, patch.vertices] = shape - start[patch.vertices]
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
@@ -89,7 +92,7 @@ def _met(upper: np.ndarray, lower: np.ndarray, ends: np.ndarray, radius: float) 
     reach = _widened(reach)[:, None]
     under = _turned(lower, meeting, at_shares(at_lower, at_upper, reach))
     before = np.interp(at_upper, at_lower, np.linalg.norm(under, axis=2).max(0))[:, None] - reach
-    return _turned(upper, hanging, reach + taper * (before + radius * LIFT)), under
+    return _turned(upper, hanging, reach + np.sqrt(taper) * (before + radius * LIFT)), under
 
 
 def _passing(rows: np.ndarray, directions: np.ndarray, radius: float) -> np.ndarray:

@@ -112,7 +112,7 @@ def _sphere(points: np.ndarray, skin: np.ndarray, axes: np.ndarray) -> tuple[np.
         centre, _ = _robust_sphere(points, _behind(points, radius), radius, skin)
         offset = points - centre
         beside = np.sqrt(((offset[:, None] - (offset @ axes.T)[..., None] * axes) ** 2).sum(-1)).max() / radius
-        through = 1 - np.linalg.norm(skin - centre, axis=1).min() / radius
+        through = 1 - np.linalg.norm(skin - centre, axis=1).min(initial=np.inf) / radius
         cost = max(0.0, beside - FRONT) + max(0.0, through) + 0.1 * abs(np.log(radius / wanted))
         if cost < least:
             best, least = (centre, float(radius)), cost

@@ -13,9 +13,9 @@ from toongeo.pipeline.rig.gaze import GAZE_NAMES, gaze_names, gaze_rotation
 from toongeo.pipeline.rig.lid_rings import along, lid_rings, opening_height
 from toongeo.pipeline.rig.rig import Rig
 
-# How much of the eyeball's turn the middle of the upper and of the lower lid make: In, Out, Up, Down. Looking down, the
-# upper lid stays with the iris and the lower one gives way; looking aside, the cornea takes both a little along.
-FOLLOWS = {"In": (0.1, 0.1), "Out": (0.1, 0.1), "Up": (0.35, 0.1), "Down": (0.7, 0.25)}
+# How much of the eyeball's turn the middle of the upper and of the lower lid make, by DIRECTIONS of gaze. Looking down,
+# the upper lid stays with the iris and the lower one gives way; looking aside, the cornea takes both a little along.
+FOLLOWS = ((0.1, 0.1), (0.1, 0.1), (0.35, 0.1), (0.7, 0.25))
 MOST = 0.5  # of the opening: how far a lid moves
 TAPER = 0.4  # of the way from corner to corner over which lids follow less and less
 
@@ -40,7 +40,7 @@ def follow_gaze(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     for side, name in enumerate(SIDES):
         rings, patch = lid_rings(face.model, name), eye_patch(face.model, name)
         offset, at = rig.neutral - eyes.centres[side], rings.vertices
-        for look, (direction, follows) in zip(gaze_names(name), FOLLOWS.items(), strict=True):
+        for look, follows in zip(gaze_names(name), FOLLOWS, strict=True):
             turn = Rotation.from_matrix(gaze_rotation(name, {look: 1.0})).as_rotvec()
             most = MOST * opening_height(offset[rings.upper[0]], offset[rings.lower[0]]) / eyes.radii[side]
             scale = min(1.0, most / (max(follows) * np.linalg.norm(turn)))

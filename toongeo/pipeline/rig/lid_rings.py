@@ -71,7 +71,7 @@ def lid_rings(model: MorphableModel, side: str) -> LidRings:
         rows.append([found.pop() for found in outwards])
         taken |= set(rows[-1])
     rings = np.array(rows)
-    upper, lower = (rim_path(model, f"lid_{lid}_{side}") for lid in ("upper", "lower"))
+    upper = rim_path(model, f"lid_upper_{side}")
     corners = [_nearest(model, rings, upper[end]) for end in (0, -1)]
     rings = np.roll(rings, -corners[0], axis=1)
     far = (corners[1] - corners[0]) % rings.shape[1]

@@ -39,25 +39,25 @@ def part_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     for side, name in enumerate(SIDES):
         rings, patch = lid_rings(face.model, name), eye_patch(face.model, name)
         blinks = rig.names.index(f"eyeBlink{name.capitalize()}")
-        least = LEFT * eyes.radii[side]
+        least, up, at = LEFT * eyes.radii[side], across_opening(rings, rig.neutral), rings.vertices
         for shapes in (deltas, gaze):
             for k, shape in enumerate(shapes):
                 if shapes is deltas and k == blinks:
                     continue
-                change = _parting(rings, rig.neutral, shape, least)
+                if not shape[at].any():
+                    continue
+                change = _parting(rings, rig.neutral, shape, up, least)
                 if not change.any():
                     continue
-                at = rings.vertices
                 pulled = patch.pulled(rig.neutral, at, rig.neutral[at] + change[at])
                 shapes[k, patch.vertices] += pulled - rig.neutral[patch.vertices]
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
 
 
-def _parting(rings: LidRings, V: np.ndarray, shape: np.ndarray, least: float) -> np.ndarray:
+def _parting(rings: LidRings, V: np.ndarray, shape: np.ndarray, up: np.ndarray, least: float) -> np.ndarray:
     """Change (n, 3) of a shape that leaves an opening of ``least`` mm, or what there was; zero off the lids' edges."""
     at_upper, at_lower = along(V[rings.upper[0]]), along(V[rings.lower[0]])
-    up = across_opening(rings, V)
     opening = opening_gaps(rings, V, up)
     widening = (shape[rings.upper[0]] - at_shares(at_upper, at_lower, shape[rings.lower[0]])) @ up
     taper = np.minimum(1.0, np.minimum(at_upper, 1 - at_upper) / TAPER)

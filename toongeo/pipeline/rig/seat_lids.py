@@ -11,7 +11,7 @@ from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch, sagitta
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
 from toongeo.pipeline.rig.lid_rings import LidRings, lid_rings, opening_height
 from toongeo.pipeline.rig.rig import Rig
-from toongeo.protocols import HeadCamera
+from toongeo.protocols import Camera
 
 # Of the radius: how far off the eyeball the rows of LidRings lie, from the inner edge outwards. The upper lid lies
 # before the lower one, so that closed lids keep their order, and lids that have far to go lie farther off: a straight
@@ -74,7 +74,7 @@ def _clearances(rings: LidRings, V: np.ndarray, radius: float) -> np.ndarray:
     return off[rings.vertices]
 
 
-def _bent(camera: HeadCamera, patch: EyePatch, V: np.ndarray, edges: np.ndarray, moves: np.ndarray) -> np.ndarray:
+def _bent(camera: Camera, patch: EyePatch, V: np.ndarray, edges: np.ndarray, moves: np.ndarray) -> np.ndarray:
     """Vertices (n, 3) with the lids' edges moved in depth by their ``moves`` (n,), and skin by what it lacks."""
     px, depth = camera.project(V), camera.depth(V)
     anchors = edges
@@ -91,9 +91,7 @@ def _bent(camera: HeadCamera, patch: EyePatch, V: np.ndarray, edges: np.ndarray,
     return bent
 
 
-def _edge_moves(
-    view: np.ndarray, offset: np.ndarray, sight: np.ndarray, radius: float, off: np.ndarray
-) -> np.ndarray:
+def _edge_moves(view: np.ndarray, offset: np.ndarray, sight: np.ndarray, radius: float, off: np.ndarray) -> np.ndarray:
     """Steps (k,) along the lines of sight that lay the lids' edges onto the eyeball and keep their relief.
 
     Vertices that are close to each other in the picture, ``view`` (k, 2) in mm, move alike: where lids are nearly shut,
@@ -106,9 +104,7 @@ def _edge_moves(
     return np.clip(moves, least, most)
 
 
-def _to_sphere(
-    offset: np.ndarray, sight: np.ndarray, radius: np.ndarray, miss: float | None = None
-) -> np.ndarray:
+def _to_sphere(offset: np.ndarray, sight: np.ndarray, radius: np.ndarray, miss: float | None = None) -> np.ndarray:
     """Steps (k,) along lines of sight (k, 3) that bring offsets (k, 3) from a centre onto the front of a sphere.
 
     A line that misses the sphere, or nearly, is followed to just before its middle, or the step is ``miss``.

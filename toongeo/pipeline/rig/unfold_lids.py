@@ -17,8 +17,8 @@ MOVES = 0.3  # mm: shapes that move the skin around an eye less than this are no
 SHARP = np.radians(65.0)  # between the normals of neighbours: skin that passes through itself has such an edge nearby
 REACH = 10  # edges from there within which it is looked for
 ALLOWED = 6  # triangles that may intersect others
-DAMPING = 0.5  # by how much a round weakens a shape where it folds
-ROUNDS = 3
+AGAIN = 4  # edges from what was found, within which it is looked for again
+DAMPING = (0.4, 0.7, 1.0)  # by how much a shape is weakened where it folds, the first, second and third time
 SPREADING = 12  # edges over which that fades into the surroundings
 
 
@@ -51,17 +51,16 @@ def unfold_lids(face: AlignedFace, rig: Rig) -> Rig:
             if shapes is deltas:
                 moves[blinks] = False
             for k in np.flatnonzero(moves):
-                for _ in range(ROUNDS):
-                    V = rig.neutral + shapes[k]
-                    folds = pairs[_sharp(patch, pairs, V) & ~sharp]
-                    if not len(folds):
-                        break
-                    near = _around(face.model, patch.vertices[patch.faces[folds]], REACH)[patch.vertices] > 0
+                V = rig.neutral + shapes[k]
+                suspects, reach = pairs[_sharp(patch, pairs, V) & ~sharp], REACH
+                for damping in DAMPING if len(suspects) else ():
+                    near = _around(face.model, patch.vertices[patch.faces[suspects]], reach)[patch.vertices] > 0
                     hit = np.setdiff1d(_crossing(patch, V, np.flatnonzero(near[patch.faces].any(1))), crossing)
                     if len(hit) <= ALLOWED:
                         break
                     weight = _around(face.model, patch.vertices[patch.faces[hit]], SPREADING)
-                    shapes[k] *= 1 - DAMPING * weight[:, None]
+                    shapes[k] *= 1 - damping * weight[:, None]
+                    V, suspects, reach = rig.neutral + shapes[k], hit, AGAIN
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
 
@@ -84,6 +83,8 @@ def _sharp(patch: EyePatch, pairs: np.ndarray, V: np.ndarray) -> np.ndarray:
 
 def _crossing(patch: EyePatch, V: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Those of some triangles (k,) of a patch that intersect others of them."""
+    if not len(triangles):
+        return triangles
     return triangles[np.unique(self_intersections(V[patch.vertices], patch.faces[triangles]))]
 
 
