@@ -9,13 +9,12 @@ from toongeo.io import check_image
 from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.fit_eyes import Eyes
-from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, EYE_RIGHT, MAX_SIDE, opening_mask
 from toongeo.pipeline.texture.find_irises import Iris
 from toongeo.render import Fragments, rasterize, sample_image, uv_to_px
 
 OUTLINE = 0.05  # of the eye's width: half the thickness of a drawn line
-FADE = 0.006  # of the disc's width: over this distance the colour at the lids fades to that of the unseen
+FADE = 0.006  # of the disc's width: s.d. of the transition at the lids
 RINGS = 16  # of an iris, each of one colour where it is not seen
 FEWEST = 8  # texels that must be seen for a colour
 BESIDE = 1.2  # radii of the iris: farther away the eye is white
@@ -133,17 +132,17 @@ def _completed(colours: np.ndarray, away: np.ndarray, seen: np.ndarray) -> np.nd
 def _disc_image(
     rows: np.ndarray, columns: np.ndarray, colours: np.ndarray, seen: np.ndarray, unseen: np.ndarray
 ) -> np.ndarray:
-    """The square of the atlas about a disc: seen colours, diffused outwards and faded to those of the unseen."""
+    """The square of the atlas about a disc: seen colours, smoothly joined to those of the unseen."""
     shape = rows.max() + 1, columns.max() + 1
     image, known = np.full((*shape, 3), WHITE), np.zeros(shape, bool)
     beyond = image.copy()
     beyond[rows, columns] = unseen
     image[rows[seen], columns[seen]] = colours[seen]
     known[rows[seen], columns[seen]] = True
-    if not known.any():
-        image = beyond
-    elif not known.all():
-        distance = cv2.distanceTransform((~known).astype(np.uint8), cv2.DIST_L2, 5)[..., None]
-        fade = np.clip(distance / (FADE * known.shape[1]), 0, 1)
-        image = (1 - fade) * diffuse_texture(image, known) + fade * beyond
+    if not known.all():
+        # Seen colours reach a little beyond the lids, where they are mixed with those of the unseen.
+        share = cv2.GaussianBlur(known.astype(np.float64), (0, 0), FADE * known.shape[1])[..., None]
+        near = cv2.GaussianBlur(np.where(known[..., None], image, 0), (0, 0), FADE * known.shape[1])
+        mixed = beyond + np.clip(2 * share, 0, 1) * (near / np.maximum(share, 1e-6) - beyond)
+        image = np.where(known[..., None], image, mixed)
     return np.clip(np.rint(image), 0, 255).astype(np.uint8)
