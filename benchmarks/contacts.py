@@ -97,8 +97,8 @@ def main() -> None:
         for picture in sorted(p for kind in ("png", "jpg") for p in folder.glob(f"*.{kind}")):
             shown, mean, most, within, half, excess, closed, contacts, transfer, name = row(picture)
             print(
-                f"{picture.stem:<26} {shown:5.2f}   {mean:8.1f} {most:4.1f}  {within:6d} {half:4d} {excess:8d} {closed:6.1f}"
-                f"  {contacts:6.2f} s {transfer:6.2f} s  {name}",
+                f"{picture.stem:<26} {shown:5.2f}   {mean:8.1f} {most:4.1f}  {within:6d} {half:4d} {excess:8d}"
+                f" {closed:6.1f}  {contacts:6.2f} s {transfer:6.2f} s  {name}",
                 flush=True,
             )
 

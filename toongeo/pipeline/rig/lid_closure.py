@@ -6,6 +6,7 @@ from toongeo.pipeline.rig.lid_rings import LidRings, along, at_shares
 
 GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame
 OPEN = 0.03  # of the opening's width: lids that are apart by less are shut
+CORNER = 3  # columns at either corner, where the lids are one
 
 
 def lid_closure(rings: LidRings, neutral: np.ndarray, blink: np.ndarray) -> float:
@@ -35,7 +36,7 @@ def _widest(rings: LidRings, V: np.ndarray, along_opening: np.ndarray, across: n
     upper, lower = V[rings.upper[0]], V[rings.lower[0]]
     order = np.argsort(lower @ along_opening, kind="stable")
     below = np.interp(upper @ along_opening, (lower @ along_opening)[order], (lower @ across)[order])
-    return float((upper @ across - below)[1:-1].max())
+    return float((upper @ across - below)[CORNER:-CORNER].max())
 
 
 def opening_gaps(rings: LidRings, V: np.ndarray, across: np.ndarray) -> np.ndarray:
