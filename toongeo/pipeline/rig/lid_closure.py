@@ -4,7 +4,9 @@ import numpy as np
 
 from toongeo.pipeline.rig.lid_rings import LidRings, along, at_shares
 
-OPEN = 0.02  # of the opening's width: lids that are apart by less are shut
+GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame
+OPEN = 0.03  # of the opening's width: lids that are apart by less are shut
+CORNER = 3  # columns at either corner, where the lids are one
 
 
 def lid_closure(rings: LidRings, neutral: np.ndarray, blink: np.ndarray) -> float:
@@ -23,9 +25,18 @@ def lid_closure(rings: LidRings, neutral: np.ndarray, blink: np.ndarray) -> floa
         the neutral face. 100 for an eye that is shut in the neutral face and stays so.
     """
     across = across_opening(rings, neutral)
-    before, after = (float(opening_gaps(rings, V, across).max()) for V in (neutral, blink))
-    width = float(np.linalg.norm(neutral[rings.upper[0, -1]] - neutral[rings.upper[0, 0]]))
+    corners = neutral[rings.upper[0, -1]] - neutral[rings.upper[0, 0]]
+    width = float(np.linalg.norm(corners))
+    before, after = (_widest(rings, V, corners / width, across) for V in (neutral, blink))
     return 100.0 * (1 - min(1.0, max(0.0, after) / max(before, OPEN * width)))
+
+
+def _widest(rings: LidRings, V: np.ndarray, along_opening: np.ndarray, across: np.ndarray) -> float:
+    """Greatest height, mm, of the inner edge of the upper lid over that of the lower one at the same place."""
+    upper, lower = V[rings.upper[0]], V[rings.lower[0]]
+    order = np.argsort(lower @ along_opening, kind="stable")
+    below = np.interp(upper @ along_opening, (lower @ along_opening)[order], (lower @ across)[order])
+    return float((upper @ across - below)[CORNER:-CORNER].max())
 
 
 def opening_gaps(rings: LidRings, V: np.ndarray, across: np.ndarray) -> np.ndarray:
@@ -35,9 +46,8 @@ def opening_gaps(rings: LidRings, V: np.ndarray, across: np.ndarray) -> np.ndarr
 
 
 def across_opening(rings: LidRings, V: np.ndarray) -> np.ndarray:
-    """Unit vector (3,) in the plane of the lids' edges, from the lower to the upper lid."""
-    points = V[rings.vertices]
-    plane = np.linalg.svd(points - points.mean(0), full_matrices=False)[2][2]
-    across = np.cross(plane, V[rings.upper[0, -1]] - V[rings.upper[0, 0]])
+    """Unit vector (3,) square to the line between the corners and to the resting gaze, from lower to upper lid."""
+    along_opening = V[rings.upper[0, -1]] - V[rings.upper[0, 0]]
+    across = np.cross(GAZE, along_opening)
     up = (V[rings.upper[2]].mean(0) - V[rings.lower[2]].mean(0)) @ across
     return np.asarray(across * np.sign(up or 1.0) / np.linalg.norm(across))

@@ -62,7 +62,7 @@ def lid_rings(model: MorphableModel, side: str) -> LidRings:
         a, b = (int(v) for v in edge)
         neighbours.setdefault(a, set()).add(b)
         neighbours.setdefault(b, set()).add(a)
-    rows = [_loop({int(v): sorted(neighbours[v] & set(rim.tolist())) for v in rim})]
+    rows = [_loop({v: sorted(neighbours.get(v, set()) & set(rim.tolist())) for v in rim.tolist()})]
     taken = set(np.flatnonzero(model.region(f"socket_{side}")).tolist()) | set(rim.tolist())
     while len(rows) < ROWS:
         outwards = [neighbours[v] - taken for v in rows[-1]]
