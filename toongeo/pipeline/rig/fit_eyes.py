@@ -8,8 +8,8 @@ import numpy as np
 from toongeo._read_only import read_only
 from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.gaze import GAZE_NAMES, gaze_rotation
-from toongeo.pipeline.rig.lid_rings import lid_rings
+from toongeo.pipeline.rig.gaze import GAZE_NAMES, TURN, gaze_rotation
+from toongeo.pipeline.rig.lid_rings import lid_rings, opening_height
 from toongeo.pipeline.rig.rig import Rig
 
 SIDES = ("left", "right")
@@ -21,6 +21,7 @@ HUBER = 2.0  # s.d. beyond which a vertex pulls with constant force
 RIM_POINTS = 30  # a rim counts as so many independent ones
 FRONT = 0.9  # of the radius: how far from the line of sight the lids' edges may be
 OFF = 0.035  # of the radius: how far off the eyeball the lids' edges lie, and other skin at least
+WANDER = np.array([0.4, 0.5])  # of the opening's width and height: how far an iris moves from its middle
 REACH = 2.0  # widths of the opening: skin farther away is not looked at
 
 
@@ -33,6 +34,9 @@ class Eyes:
     centres : (2, 3) float64, mm, model frame
     radii : (2,) float64, mm
     templates : left and right EyeballTemplate
+    turn : (2, 2) float64, degrees
+        How far each eye turns sideways, and up or down, at weight 1: as a person's, but in an opening that is small for
+        the eyeball only so far that the iris does not leave it.
     pose : (8,) float64
         Weights of ``GAZE_NAMES`` with which the eyes look as in the picture.
     report : dict
@@ -42,11 +46,12 @@ class Eyes:
     centres: np.ndarray
     radii: np.ndarray
     templates: tuple[EyeballTemplate, ...]
+    turn: np.ndarray
     pose: np.ndarray
     report: dict[str, float]
 
     def __post_init__(self) -> None:
-        read_only(self, "centres", "radii", "pose")
+        read_only(self, "centres", "radii", "turn", "pose")
 
     def vertices(self, side: int, rotation: np.ndarray | None = None) -> np.ndarray:
         """Vertices (k, 3), mm, of eyeball 0 (left) or 1 (right), turned by a rotation (3, 3) of the gaze."""
@@ -60,7 +65,7 @@ class Eyes:
 
     def looking(self, side: int, weights: dict[str, float]) -> np.ndarray:
         """Vertices (k, 3), mm, for ``eyeLook*`` weights, which turn the eyeball."""
-        return self.vertices(side, gaze_rotation(SIDES[side], weights))
+        return self.vertices(side, gaze_rotation(SIDES[side], weights, self.turn[side]))
 
 
 def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
@@ -82,14 +87,22 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
     Eyes
     """
     started = time.perf_counter()
-    centres, radii = np.empty((2, 3)), np.empty(2)
+    centres, radii, turn = np.empty((2, 3)), np.empty(2), np.empty((2, 2))
     axes = np.array([[0.0, 0.0, 1.0], _line_of_sight(face)])
     for side, name in enumerate(SIDES):
         rings = lid_rings(face.model, name)
         skin = face.region("skin").copy()
         skin[rings.vertices] = False
         centres[side], radii[side] = _sphere(rig.neutral[rings.vertices], rig.neutral[skin], axes)
-    return Eyes(centres, radii, face.model.eyes, np.zeros(len(GAZE_NAMES)), {"seconds": time.perf_counter() - started})
+        turn[side] = _turn(rig.neutral[rings.upper[0]], rig.neutral[rings.lower[0]], radii[side])
+    report = {"seconds": time.perf_counter() - started}
+    return Eyes(centres, radii, face.model.eyes, turn, np.zeros(len(GAZE_NAMES)), report)
+
+
+def _turn(upper: np.ndarray, lower: np.ndarray, radius: float) -> np.ndarray:
+    """Degrees (2,) that an eye turns sideways, and up or down, between rims (k, 3) and (m, 3)."""
+    opening = np.array([np.linalg.norm(upper[-1] - upper[0]), opening_height(upper, lower)])
+    return np.minimum(TURN, np.rad2deg(np.arcsin(np.minimum(1, WANDER * opening / radius))))
 
 
 def _line_of_sight(face: AlignedFace) -> np.ndarray:

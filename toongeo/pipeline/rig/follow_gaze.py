@@ -41,7 +41,7 @@ def follow_gaze(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         rings, patch = lid_rings(face.model, name), eye_patch(face.model, name)
         offset, at = rig.neutral - eyes.centres[side], rings.vertices
         for look, follows in zip(gaze_names(name), FOLLOWS, strict=True):
-            turn = Rotation.from_matrix(gaze_rotation(name, {look: 1.0})).as_rotvec()
+            turn = Rotation.from_matrix(gaze_rotation(name, {look: 1.0}, eyes.turn[side])).as_rotvec()
             most = MOST * opening_height(offset[rings.upper[0]], offset[rings.lower[0]]) / eyes.radii[side]
             scale = min(1.0, most / (max(follows) * np.linalg.norm(turn)))
             turned = offset.copy()

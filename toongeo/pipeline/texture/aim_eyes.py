@@ -32,7 +32,7 @@ def aim_eyes(face: AlignedFace, eyes: Eyes, irises: tuple[Iris | None, Iris | No
     for side, iris in enumerate(irises):
         if iris is not None:
             direction = _towards(face, eyes.centres[side], eyes.radii[side], iris.centre)
-            weights |= gaze_weights(SIDES[side], direction)
+            weights |= gaze_weights(SIDES[side], direction, eyes.turn[side])
     return dataclasses.replace(eyes, pose=np.array([weights.get(name, 0.0) for name in GAZE_NAMES]))
 
 

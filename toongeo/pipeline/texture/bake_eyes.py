@@ -15,6 +15,7 @@ from toongeo.render import Fragments, rasterize, sample_image, uv_to_px
 
 OUTLINE = 0.05  # of the eye's width: half the thickness of a drawn line
 FADE = 0.006  # of the disc's width: s.d. of the transition at the lids
+GRAZING = 0.3  # cosine to the line of sight: nearer to the outline, a pixel covers too much of the eyeball
 RINGS = 16  # of an iris, each of one colour where it is not seen
 FEWEST = 8  # texels that must be seen for a colour
 BESIDE = 1.2  # radii of the iris: farther away the eye is white
@@ -73,7 +74,7 @@ def bake_eyes(
         at = np.einsum("kc,kcd->kd", weights, px[corners])
         column = np.clip(np.rint(at[:, 0]), 0, crop.shape[1] - 1).astype(int)
         row = np.clip(np.rint(at[:, 1]), 0, crop.shape[0] - 1).astype(int)
-        front = np.einsum("kc,kc->k", weights, ahead[corners]) > 0
+        front = np.einsum("kc,kc->k", weights, ahead[corners]) > GRAZING
         seen = opening[row, column] & front
         colours = sample_image(crop, at)
         unseen = np.tile(WHITE, (len(at), 1))

@@ -101,7 +101,7 @@ def find_irises(img: np.ndarray, landmarks: np.ndarray) -> tuple[Iris | None, Ir
     contrasts = [view.contrast(place) for view, place in zip(seen, found, strict=True)]
     if np.mean(contrasts) < CONTRAST or min(contrasts) < CONTRAST / 2:
         return None, None
-    irises = iter([view.iris(*pair) for view, *pair in zip(seen, found, contrasts, strict=True)])
+    irises = iter([view.iris(place, contrast) for view, place, contrast in zip(seen, found, contrasts, strict=True)])
     left, right = (None if view is None else next(irises) for view in views)
     return left, right
 
