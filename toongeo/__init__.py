@@ -8,7 +8,7 @@ The stages, in the order in which :func:`make_avatar` calls them:
 4. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.
 5. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face; :func:`fit_mouth` - lips
    that meet and do not cross, teeth that stay behind them.
-6. :func:`fit_eyes`, :func:`close_lids`, :func:`clear_lids` - eyeballs, and lids that close over them.
+6. :func:`fit_lids` (by :func:`fit_eyes`, :func:`close_lids`, :func:`clear_lids` ...) - eyeballs and lids in contact.
 7. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
 8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .vrm, .usdz, .html, .obj, .ply);
    :func:`load_avatar` reads a .glb back.
@@ -79,6 +79,7 @@ __getattr__, __dir__, __all__ = attach(
         "Animator": "pipeline",
         "rig_mesh": "pipeline",
         "fit_eyes": "pipeline",
+        "fit_lids": "pipeline",
         "close_lids": "pipeline",
         "clear_lids": "pipeline",
         "fit_mouth": "pipeline",

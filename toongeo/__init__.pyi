@@ -47,6 +47,7 @@ from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
+from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.pipeline import fit_mouth as fit_mouth
 from toongeo.pipeline import neutral_face as neutral_face
 from toongeo.pipeline import parse_face as parse_face

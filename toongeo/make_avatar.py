@@ -13,14 +13,14 @@ from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
+    aim_eyes,
     align_face,
     bake_eyes,
     bake_texture,
     build_rig,
-    clear_lids,
-    close_lids,
+    find_irises,
     fit_3dmm,
-    fit_eyes,
+    fit_lids,
     fit_mouth,
     neutral_face,
     parse_face,
@@ -28,7 +28,6 @@ from toongeo.pipeline import (
     snap_eyes,
 )
 from toongeo.pipeline.rig.fit_pose import fit_pose
-from toongeo.pipeline.rig.line_sockets import line_sockets
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
 
@@ -105,15 +104,17 @@ def make_avatar(
     face = align_face(fit, landmarks)
     clock.start("rig")
     at_rest = neutral_face(face) if neutral else face
-    rig = close_lids(at_rest, fit_mouth(at_rest, build_rig(at_rest, gain=gain)))
+    rig = fit_mouth(at_rest, build_rig(at_rest, gain=gain))
     clock.start("eyes")
-    eyes = fit_eyes(at_rest, rig)
-    rig = line_sockets(at_rest, clear_lids(at_rest, rig, eyes), eyes)
-    # What these stages did to the neutral face (sockets that end in the eyeballs) is done to the face of the picture.
+    rig, eyes = fit_lids(at_rest, rig)
+    # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
     face = dataclasses.replace(face, vertices=rig.neutral + (face.vertices - at_rest.vertices))
     rig = dataclasses.replace(rig, pose=fit_pose(rig, face.vertices, face.region("skin")))
     clock.start("texture")
-    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
+    irises = find_irises(img, landmarks)
+    eyes = aim_eyes(face, eyes, irises)
+    texture = bake_texture(img, face, rig=rig, size=texture_size, parse=parse)
+    texture = bake_eyes(img, face, eyes, texture, irises)
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(

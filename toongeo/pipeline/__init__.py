@@ -18,13 +18,16 @@ from toongeo.pipeline.rig.build_rig import build_rig
 from toongeo.pipeline.rig.clear_lids import clear_lids
 from toongeo.pipeline.rig.close_lids import close_lids
 from toongeo.pipeline.rig.fit_eyes import Eyes, fit_eyes
+from toongeo.pipeline.rig.fit_lids import fit_lids
 from toongeo.pipeline.rig.fit_mouth import fit_mouth
 from toongeo.pipeline.rig.neutral_face import neutral_face
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.rig.rig_mesh import rig_mesh
+from toongeo.pipeline.texture.aim_eyes import aim_eyes
 from toongeo.pipeline.texture.bake_eyes import bake_eyes
 from toongeo.pipeline.texture.bake_texture import bake_texture
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
+from toongeo.pipeline.texture.find_irises import Iris, find_irises
 from toongeo.pipeline.texture.texture_coordinates import texture_coordinates
 
 __all__ = [
@@ -37,7 +40,10 @@ __all__ = [
     "RidgeRegressor",
     "PhotometricOptions",
     "Rig",
+    "Iris",
     "adjust_coefficients",
+    "aim_eyes",
+    "find_irises",
     "align_face",
     "bake_eyes",
     "bake_texture",
@@ -49,6 +55,7 @@ __all__ = [
     "fit_eyes",
     "fit_mouth",
     "rig_mesh",
+    "fit_lids",
     "train_ridge_regressor",
     "neutral_face",
     "parse_face",

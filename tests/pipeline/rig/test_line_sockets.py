@@ -6,6 +6,7 @@ from toongeo.pipeline import align_face, build_rig, clear_lids, close_lids, fit_
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.rig.fit_eyes import SIDES
 from toongeo.pipeline.rig.line_sockets import DEPTH, _band, _lined, line_sockets
+from toongeo.pipeline.rig.seat_lids import seat_lids
 from toongeo.render import ScaledOrthographicCamera, rasterize
 
 BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
@@ -15,9 +16,9 @@ BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
 def stages(request, cartoon):
     img, landmarks = cartoon(request.param)
     face = align_face(fit_3dmm(img, landmarks), landmarks)
-    rig = close_lids(face, build_rig(face))
+    rig = build_rig(face)
     eyes = fit_eyes(face, rig)
-    cleared = clear_lids(face, rig, eyes)
+    cleared = clear_lids(face, close_lids(face, seat_lids(face, rig, eyes), eyes), eyes)
     return face, eyes, cleared, line_sockets(face, cleared, eyes)
 
 

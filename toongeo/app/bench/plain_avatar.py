@@ -14,9 +14,7 @@ from toongeo.pipeline import (
     bake_eyes,
     bake_texture,
     build_rig,
-    clear_lids,
-    close_lids,
-    fit_eyes,
+    fit_lids,
 )
 from toongeo.protocols import FaceParse
 
@@ -40,9 +38,7 @@ def plain_avatar(
         Side of the atlas, texels.
     """
     face = AlignedFace(fit.vertices, fit.camera, fit.landmark_vertices, fit.model, fit, report={})
-    rig = close_lids(face, build_rig(face))
-    eyes = fit_eyes(face, rig)
-    rig = clear_lids(face, rig, eyes)
+    rig, eyes = fit_lids(face, build_rig(face))
     texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
     errors = landmark_errors(fit, landmarks)
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])

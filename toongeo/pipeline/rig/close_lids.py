@@ -4,28 +4,37 @@ import dataclasses
 import time
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from toongeo.geometry import laplacian_align
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.align.carry_inner_parts import opening_rim
-from toongeo.pipeline.align.rim_anchors import rim_path
+from toongeo.pipeline.rig.clear_lids import CLEARANCE, SHUT
+from toongeo.pipeline.rig.eye_patch import eye_patch
+from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
+from toongeo.pipeline.rig.lid_rings import LidRings, along, at_shares, lid_rings, opening_height
 from toongeo.pipeline.rig.rig import Rig
 
-WEIGHT = 1e3  # of the anchors: they are met to about a hundredth of a millimetre
+TRAVEL = np.radians(40.0)  # about the eyeball: what is more than this the lower lid takes over, up to half of the way
+OVERLAP, LIFT = 0.02, 0.04  # of the radius: by how much the upper lid hangs over the lower one, and before it
+TAPER = 0.12  # of the way from corner to corner over which both die out
+FREE = 5  # columns at each corner
+RESTING = (0.01, 0.03)  # of the radius: least and most that the transfer may leave the lids farther off when shut
+STEEPEST = np.radians(60.0)  # beyond which a meeting line farther out would not help
 
 
-def close_lids(face: AlignedFace, rig: Rig) -> Rig:
+def close_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     """Make ``eyeBlinkLeft`` and ``eyeBlinkRight`` close the eyes of this face.
 
     Deformation transfer keeps rotations and stretches, not contacts: an eye that is drawn taller than the template's
-    stays open when it blinks. At weight 1 of the blink the upper lid is therefore brought down onto the lower one by
-    Laplacian deformation of the skin around the eye.
+    stays open when it blinks. At weight 1 both lids are therefore brought to a line where they meet, the upper one over
+    the lower one like a tile, and the skin around the eye follows by Laplacian deformation. The line is where the
+    lower lid comes to lie by the transfer, or higher where the upper lid would have too far to go; and so far before
+    the eyeball that the straight ways of a blendshape to it stay outside.
 
     Parameters
     ----------
     face : AlignedFace
     rig : Rig
+        Its neutral lids must lie on the eyeballs (:func:`~toongeo.pipeline.rig.seat_lids.seat_lids`).
+    eyes : Eyes
 
     Returns
     -------
@@ -34,44 +43,92 @@ def close_lids(face: AlignedFace, rig: Rig) -> Rig:
     """
     started = time.perf_counter()
     deltas = rig.deltas.copy()
-    for side in ("left", "right"):
-        blink = rig.names.index(f"eyeBlink{side.capitalize()}")
-        deltas[blink] = _closed(face, side, rig.neutral + deltas[blink]) - rig.neutral
-    return dataclasses.replace(
-        rig, deltas=deltas, report={"seconds": rig.report["seconds"] + time.perf_counter() - started}
+    for side, name in enumerate(SIDES):
+        blink = rig.names.index(f"eyeBlink{name.capitalize()}")
+        rings, patch = lid_rings(face.model, name), eye_patch(face.model, name)
+        deltas[blink] *= _gain(rig.neutral, deltas[blink], rings)
+        start, end = (V - eyes.centres[side] for V in (rig.neutral, rig.neutral + deltas[blink]))
+        upper, lower = _met(start[rings.upper], start[rings.lower], end[rings.lower], eyes.radii[side])
+        closed = np.empty_like(end)
+        closed[rings.lower], closed[rings.upper] = lower, upper
+        # Towards the corners the outer rows are left to follow: those of the two lids share the corner's few vertices.
+        held = np.unique(
+            np.r_[
+                rings.upper[0], rings.lower[0], rings.upper[1:, FREE:-FREE].ravel(), rings.lower[1:, FREE:-FREE].ravel()
+            ]
+        )
+        shape = patch.pulled(end, held, closed[held])
+        deltas[blink, patch.vertices] = shape - start[patch.vertices]
+    report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
+    return dataclasses.replace(rig, deltas=deltas, report=report)
+
+
+def _gain(V: np.ndarray, blink: np.ndarray, rings: LidRings) -> float:
+    """How much of a blink is enough: that of the template would take the lids of a narrow eye through each other."""
+    upper, lower = rings.upper[0], rings.lower[0]
+    closing = blink[upper] - at_shares(along(V[upper]), along(V[lower]), blink[lower])
+    return min(1.0, opening_height(V[upper], V[lower]) / max(float(np.linalg.norm(closing, axis=1).max()), 1e-9))
+
+
+def _met(upper: np.ndarray, lower: np.ndarray, ends: np.ndarray, radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """Where the rows of upper (3, k, 3) and lower (3, m, 3) lid come to lie when they have met.
+
+    All are offsets from the eyeball's centre. ``ends`` (3, m, 3) is where the transfer takes the lower lid.
+    """
+    at_upper, at_lower = along(upper[0]), along(lower[0])
+    start, end = _unit(upper[0]), _unit(at_shares(at_upper, at_lower, ends[0]))
+    angle = _angle(start, end).max()
+    line = _unit(end + min(0.5, max(0.0, 1 - TRAVEL / angle)) * (start - end))
+    down = _unit(lower[0].mean(0) - upper[0].mean(0))
+    taper = np.minimum(1.0, np.minimum(at_upper, 1 - at_upper) / TAPER)[:, None]
+    hanging, meeting = _unit(line + OVERLAP * taper * down), _unit(at_shares(at_lower, at_upper, line))
+    rest = np.clip(np.linalg.norm(ends[0], axis=1), *(radius * (1 + SHUT + np.array(RESTING))))
+    reach = np.maximum.reduce(
+        [
+            np.interp(at_upper, at_lower, np.maximum(rest, _passing(lower, meeting, radius))),
+            _passing(upper, hanging, radius),
+        ]
     )
+    reach = _widened(reach)[:, None]
+    under = _turned(lower, meeting, at_shares(at_lower, at_upper, reach))
+    before = np.interp(at_upper, at_lower, np.linalg.norm(under, axis=2).max(0))[:, None] - reach
+    return _turned(upper, hanging, reach + np.sqrt(taper) * (before + radius * LIFT)), under
 
 
-def _closed(face: AlignedFace, side: str, V: np.ndarray) -> np.ndarray:
-    """Vertices with the upper lid of one eye brought down onto the lower one; only those around the eye move."""
-    upper, lower = (rim_path(face.model, f"lid_{lid}_{side}") for lid in ("upper", "lower"))
-    around = face.region(f"eye_{side}") | face.region(f"socket_{side}")
-    patch = around[face.faces].all(1)
-    used, local = np.unique(face.faces[patch], return_inverse=True)
-    border = np.intersect1d(used, face.faces[~patch])  # where the patch is joined to the rest
-    still = np.union1d(border, lower)
-    # Upper and lower rim are paired by how far along them one is, from corner to corner: of rims that are steep at the
-    # corners, as those of round eyes are, no part is left out.
-    at_upper, at_lower = _along(V[upper]), _along(V[lower])
-    landing = np.column_stack([np.interp(at_upper, at_lower, V[lower, axis]) for axis in range(3)])
-    lands = ~np.isin(upper, still)
-    # The edge of the upper lid has a thickness: its inner side comes to lie behind the lower lid, not before it.
-    edge = np.setdiff1d(opening_rim(face.model, f"socket_{side}"), np.union1d(still, upper))
-    thickness, nearest = cKDTree(V[upper]).query(V[edge])
-    moving = np.r_[upper[lands], edge]
-    targets = np.vstack([landing[lands], landing[nearest] - thickness[:, None] * [0, 0, 1]])
-    closed = V.copy()
-    closed[used] = laplacian_align(
-        V[used],
-        local.reshape(-1, 3),
-        np.searchsorted(used, np.r_[still, moving]),
-        np.vstack([V[still], targets]),
-        weight=WEIGHT,
-    )
-    return closed
+def _passing(rows: np.ndarray, directions: np.ndarray, radius: float) -> np.ndarray:
+    """How far out in directions (k, 3) straight ways from rows (r, k, 3) must end, to pass by a sphere; (k,).
+
+    A way from a distance A touches the sphere of radius R if it turns by arccos(R / A) up to there, and from there to
+    its end by the rest of the angle.
+    """
+    clear = radius * (1 + CLEARANCE)
+    free = np.arccos(np.clip(clear / np.linalg.norm(rows, axis=2), -1, 1))
+    rest = np.clip(_angle(_unit(rows), directions) - free, 0.0, STEEPEST)
+    return np.asarray((clear / np.cos(rest)).max(0))
 
 
-def _along(path: np.ndarray) -> np.ndarray:
-    """Length along a path of points (k, 3) up to each, as a share of the whole."""
-    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
-    return np.asarray(length / length[-1])
+def _turned(rows: np.ndarray, directions: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """Rows (3, k, 3) turned about the origin so that the first points in directions (k, 3), at a distance (k, 1)."""
+    a, b = _unit(rows[0]), directions
+    axis, cosine = np.cross(a, b), (a * b).sum(1)[:, None]
+    offset = rows - rows[0]
+    turned = cosine * offset + np.cross(axis, offset)
+    turned += axis * (axis * offset).sum(-1, keepdims=True) / np.maximum(1 + cosine, 1e-9)
+    return np.asarray(b * reach + turned)
+
+
+def _widened(values: np.ndarray) -> np.ndarray:
+    """Values (k,) along a rim, where they are less than the mean of their neighbours raised to it."""
+    for _ in range(4):
+        padded = np.pad(values, 1)
+        values = np.maximum(values, (padded[:-2] + padded[2:]) / 2)
+    return values
+
+
+def _angle(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Angles between unit vectors (..., 3)."""
+    return np.asarray(np.arccos(np.clip((a * b).sum(-1), -1, 1)))
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-12))

@@ -44,7 +44,7 @@ def line_sockets(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         moved = (weights[..., None] * rig.deltas[:, rim]).sum(-2)
         neutral[band] = _lined(start, centre, radius, share)
         deltas[:, band] = _lined(start + moved, centre, radius, share) - neutral[band]
-    report = {"seconds": rig.report["seconds"] + time.perf_counter() - started}
+    report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, neutral=neutral, deltas=deltas, report=report)
 
 

@@ -9,19 +9,31 @@ from toongeo.io import check_image
 from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.fit_eyes import Eyes
-from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, EYE_RIGHT, MAX_SIDE, opening_mask
+from toongeo.pipeline.texture.find_irises import Iris
 from toongeo.render import Fragments, rasterize, sample_image, uv_to_px
 
 OUTLINE = 0.05  # of the eye's width: half the thickness of a drawn line
-FADE = 0.02  # of the disc's width: over this distance the colour at the lids fades to white
+FADE = 0.006  # of the disc's width: s.d. of the transition at the lids
+GRAZING = 0.3  # cosine to the line of sight: nearer to the outline, a pixel covers too much of the eyeball
+RINGS = 16  # of an iris, each of one colour where it is not seen
+FEWEST = 8  # texels that must be seen for a colour
+BESIDE = 1.2  # radii of the iris: farther away the eye is white
 WHITE = np.array([244.0, 242.0, 238.0])  # unseen sclera, sRGB
 
 
-def bake_eyes(img: np.ndarray, face: AlignedFace, eyes: Eyes, texture: np.ndarray) -> np.ndarray:
-    """Atlas whose eye discs show the eyes of the picture where they are seen, and white elsewhere.
+def bake_eyes(
+    img: np.ndarray,
+    face: AlignedFace,
+    eyes: Eyes,
+    texture: np.ndarray,
+    irises: tuple[Iris | None, Iris | None] = (None, None),
+) -> np.ndarray:
+    """Atlas whose eye discs show the eyes of the picture where they are seen; what lids hide is completed.
 
-    A texel is seen if it projects between the lids, that is inside the smooth curves through the eye landmarks.
+    A texel is seen if it projects between the lids, that is inside the smooth curves through the eye landmarks, with
+    the eyes turned as in the picture. The hidden part of an iris takes the median colour of its seen parts at the
+    same distance from its centre; beyond it the eye is as white as the seen white.
 
     Parameters
     ----------
@@ -30,6 +42,8 @@ def bake_eyes(img: np.ndarray, face: AlignedFace, eyes: Eyes, texture: np.ndarra
     eyes : Eyes
     texture : (size, size, 3) uint8 RGB
         From :func:`toongeo.bake_texture`; not written to.
+    irises : left and right Iris or None, optional
+        From :func:`find_irises`; an eye without is white where it is not seen.
 
     Returns
     -------
@@ -53,14 +67,22 @@ def bake_eyes(img: np.ndarray, face: AlignedFace, eyes: Eyes, texture: np.ndarra
         rows, columns = np.nonzero(disc.mask)
         box = np.s_[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
         corners = eyes.templates[side].faces[disc.face_ids[disc.mask]]
-        px = (face.project(eyes.vertices(side)) - shift + 0.5) * scale - 0.5
-        ahead = face.camera.view(eyes.vertices(side) - eyes.centres[side])[:, 2] / eyes.radii[side]
+        turned = eyes.looking_as_drawn(side)
+        px = (face.project(turned) - shift + 0.5) * scale - 0.5
+        ahead = face.camera.view(turned - eyes.centres[side])[:, 2] / eyes.radii[side]
         weights = disc.barycentrics[disc.mask]
         at = np.einsum("kc,kcd->kd", weights, px[corners])
         column = np.clip(np.rint(at[:, 0]), 0, crop.shape[1] - 1).astype(int)
         row = np.clip(np.rint(at[:, 1]), 0, crop.shape[0] - 1).astype(int)
-        seen = opening[row, column] & (np.einsum("kc,kc->k", weights, ahead[corners]) > 0)
-        atlas[box] = _disc_image(rows - rows.min(), columns - columns.min(), sample_image(crop, at), seen)
+        front = np.einsum("kc,kc->k", weights, ahead[corners]) > GRAZING
+        seen = opening[row, column] & front
+        colours = sample_image(crop, at)
+        unseen = np.tile(WHITE, (len(at), 1))
+        iris = irises[side]
+        if iris is not None:
+            away = np.linalg.norm(((at + 0.5) / scale - 0.5 + shift - iris.centre) / iris.radii, axis=1)
+            unseen = _completed(colours, np.where(front, away, np.inf), seen)
+        atlas[box] = _disc_image(rows - rows.min(), columns - columns.min(), colours, seen, unseen)
     return atlas
 
 
@@ -90,14 +112,38 @@ def _disc_fragments(template: EyeballTemplate, size: int) -> Fragments:
     return rasterize(uv_to_px(template.uv, size, size), template.faces, size, size)
 
 
-def _disc_image(rows: np.ndarray, columns: np.ndarray, colours: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """The square of the atlas about a disc: seen colours, diffused outwards and faded to white."""
+def _completed(colours: np.ndarray, away: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    """Colours (k, 3) of an eye where it is not seen, by the distance ``away`` (k,) from its iris in radii of that."""
+    bins = np.linspace(0, 1, RINGS + 1)
+    ring = np.digitize(away, bins) - 1
+    known = [k for k in range(RINGS) if (seen & (ring == k)).sum() >= FEWEST]
+    white = seen & (away > BESIDE)
+    lightness = colours[white].sum(1)
+    lit = lightness >= np.median(lightness) if white.any() else lightness
+    sclera = np.median(colours[white][lit], axis=0) if white.sum() >= FEWEST else WHITE
+    unseen = np.tile(sclera, (len(colours), 1))
+    if known:
+        medians = np.array([np.median(colours[seen & (ring == k)], axis=0) for k in known])
+        within = away < 1
+        middles = (bins[:-1] + bins[1:])[known] / 2
+        unseen[within] = np.column_stack([np.interp(away[within], middles, column) for column in medians.T])
+    return unseen
+
+
+def _disc_image(
+    rows: np.ndarray, columns: np.ndarray, colours: np.ndarray, seen: np.ndarray, unseen: np.ndarray
+) -> np.ndarray:
+    """The square of the atlas about a disc: seen colours, smoothly joined to those of the unseen."""
     shape = rows.max() + 1, columns.max() + 1
     image, known = np.full((*shape, 3), WHITE), np.zeros(shape, bool)
+    beyond = image.copy()
+    beyond[rows, columns] = unseen
     image[rows[seen], columns[seen]] = colours[seen]
     known[rows[seen], columns[seen]] = True
-    if known.any() and not known.all():
-        distance = cv2.distanceTransform((~known).astype(np.uint8), cv2.DIST_L2, 5)[..., None]
-        fade = np.clip(distance / (FADE * known.shape[1]), 0, 1)
-        image = (1 - fade) * diffuse_texture(image, known) + fade * WHITE
+    if not known.all():
+        # Seen colours reach a little beyond the lids, where they are mixed with those of the unseen.
+        share = cv2.GaussianBlur(known.astype(np.float64), (0, 0), FADE * known.shape[1])[..., None]
+        near = cv2.GaussianBlur(np.where(known[..., None], image, 0), (0, 0), FADE * known.shape[1])
+        mixed = beyond + np.clip(2 * share, 0, 1) * (near / np.maximum(share, 1e-6) - beyond)
+        image = np.where(known[..., None], image, mixed)
     return np.clip(np.rint(image), 0, 255).astype(np.uint8)

@@ -1,0 +1,107 @@
+"""Contacts between lids and eyeballs on the bundled examples, or on other pictures.
+
+usage: python benchmarks/contacts.py [FOLDER ...]
+(pictures with .pts or .txt beside them; default: the bundled examples)
+
+shows: most of an eyeball's disc that is seen at `eyeBlink*` = 1, yaw 0 and +-30 degrees, percent. gap: of the lids'
+edges from the eyeball in the neutral face, percent of its radius, mean and greatest. inside: skin vertices inside an
+eyeball, over the neutral face, all expressions and the gaze; half: the same for lids at a quarter, a half and three
+quarters of the blinks. crossing: triangles of the region `face` that intersect others in an expression, less those of
+the neutral face and of the template for this expression, worst of those that move the eyes; allowed are 0.1 % of the
+triangles. closed: percent of the opening. seconds: CPU time of all contacts, and of the transfer before them.
+"""
+
+import os
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ[variable] = "1"
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+from toongeo import align_face, build_rig, fit_3dmm, fit_lids, read_image, read_landmarks
+from toongeo.metrics import mesh_quality
+from toongeo.pipeline import AlignedFace, Eyes, Rig
+from toongeo.pipeline.align.carry_inner_parts import opening_rim
+from toongeo.pipeline.align.rim_anchors import rim_path
+from toongeo.pipeline.rig.fit_eyes import SIDES
+from toongeo.pipeline.rig.gaze import GAZE_NAMES
+from toongeo.pipeline.rig.visible_eyeballs import visible_eyeballs
+
+PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
+BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
+AROUND_EYES = ("brow", "cheekSquint", "eye", "mouthSmile", "noseSneer")
+
+
+def gaps(face: AlignedFace, rig: Rig, eyes: Eyes) -> np.ndarray:
+    """Distances of the lids' edges from their eyeballs, percent of the radius."""
+    out = []
+    for side, name in enumerate(SIDES):
+        paths = (rim_path(face.model, f"lid_{lid}_{name}") for lid in ("upper", "lower"))
+        rim = np.unique(np.r_[opening_rim(face.model, f"socket_{name}"), *paths])
+        out.append(np.linalg.norm(rig.neutral[rim] - eyes.centres[side], axis=1) / eyes.radii[side] - 1)
+    return 100 * np.concatenate(out)
+
+
+def inside(points: np.ndarray, eyes: Eyes) -> int:
+    return sum(
+        int((np.linalg.norm(points - c, axis=1) < r).sum()) for c, r in zip(eyes.centres, eyes.radii, strict=True)
+    )
+
+
+def crossing(face: AlignedFace, rig: Rig) -> tuple[int, str]:
+    """Most triangles by which an expression exceeds the neutral face and the template, and its name."""
+    F = face.faces[face.region("face")[face.faces].all(1)]
+    model = face.model
+
+    def count(V: np.ndarray) -> int:
+        return len(mesh_quality(V, F).intersecting)
+
+    neutral, worst = count(rig.neutral), (0, "-")
+    for name in (*rig.names, *GAZE_NAMES):
+        if name.startswith(AROUND_EYES):
+            excess = count(rig.vertices({name: 1.0})) - neutral
+            if excess > worst[0] and name in rig.names:
+                excess -= count(model.mean + model.expression[model.expression_index(name)])
+            worst = max(worst, (excess, name))
+    return worst
+
+
+def row(picture: Path) -> list[object]:
+    points = next(p for p in (picture.with_suffix(".pts"), picture.with_suffix(".txt")) if p.exists())
+    landmarks = read_landmarks(points)
+    face = align_face(fit_3dmm(read_image(picture), landmarks), landmarks)
+    times = [time.process_time()]
+    rig = build_rig(face)
+    times.append(time.process_time())
+    rig, eyes = fit_lids(face, rig)
+    times.append(time.process_time())
+    shown = [100 * visible_eyeballs(face, rig, eyes, BLINK, yaw=yaw) for yaw in (-30, 0, 30)]
+    gap, skin = gaps(face, rig, eyes), face.region("skin")
+    lids = np.any([face.region(f"eyelid_{lid}_{name}") for lid in ("upper", "lower") for name in SIDES], axis=0)
+    within = sum(inside((rig.neutral + shape)[skin], eyes) for shape in (0, *rig.deltas, *rig.gaze))
+    half = sum(inside(rig.vertices(dict.fromkeys(BLINK, w))[lids], eyes) for w in (0.25, 0.5, 0.75))
+    closed = min(rig.report["closure_left"], rig.report["closure_right"])
+    excess, name = crossing(face, rig)
+    seconds = np.diff(times)
+    return [np.max(shown), gap.mean(), gap.max(), within, half, excess, closed, seconds[1], seconds[0], name]
+
+
+def main() -> None:
+    folders = [Path(arg) for arg in sys.argv[1:]] or [PORTRAITS]
+    print(f"{'':<26} shows   gap mean  max  inside half crossing closed  contacts transfer  worst expression")
+    for folder in folders:
+        for picture in sorted(p for kind in ("png", "jpg") for p in folder.glob(f"*.{kind}")):
+            shown, mean, most, within, half, excess, closed, contacts, transfer, name = row(picture)
+            print(
+                f"{picture.stem:<26} {shown:5.2f}   {mean:8.1f} {most:4.1f}  {within:6d} {half:4d} {excess:8d}"
+                f" {closed:6.1f}  {contacts:6.2f} s {transfer:6.2f} s  {name}",
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main()
