@@ -6,6 +6,7 @@ from toongeo.pipeline.rig.lid_rings import LidRings, along, at_shares
 
 GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame
 OPEN = 0.03  # of the opening's width: lids that are apart by less are shut
+FINE = 200  # points of a lid's edge to which distances are measured
 CORNER = 3  # columns at either corner, where the lids are one
 
 
@@ -36,7 +37,11 @@ def _widest(rings: LidRings, V: np.ndarray, along_opening: np.ndarray, across: n
     upper, lower = V[rings.upper[0]], V[rings.lower[0]]
     order = np.argsort(lower @ along_opening, kind="stable")
     below = np.interp(upper @ along_opening, (lower @ along_opening)[order], (lower @ across)[order])
-    return float((upper @ across - below)[CORNER:-CORNER].max())
+    height = upper @ across - below
+    # Beside the steep ends of a slanted opening the other lid is nearer than it is below.
+    curve = at_shares(np.linspace(0, 1, FINE), along(lower), lower)
+    nearest = np.linalg.norm(upper[:, None] - curve, axis=2).min(1)
+    return float(np.minimum(height, nearest)[CORNER:-CORNER].max())
 
 
 def opening_gaps(rings: LidRings, V: np.ndarray, across: np.ndarray) -> np.ndarray:
