@@ -55,7 +55,7 @@ def eye_patch(model: MorphableModel, side: str) -> EyePatch:
     --------
     >>> from toongeo.model import default_model
     >>> patch = eye_patch(default_model(), "left")
-    >>> patch.faces.max() + 1 == len(patch.vertices)
+    >>> bool(patch.faces.max() + 1 == len(patch.vertices))
     True
     """
     skin = model.region(f"eye_{side}")

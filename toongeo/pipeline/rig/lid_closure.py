@@ -6,6 +6,7 @@ from toongeo.pipeline.rig.lid_rings import LidRings, along, at_shares
 
 GAZE = np.array([0.0, 0.0, 1.0])  # where a resting eye looks, model frame
 OPEN = 0.03  # of the opening's width: lids that are apart by less are shut
+FINE = 200  # points of a lid's edge to which distances are measured
 CORNER = 3  # columns at either corner, where the lids are one
 
 
@@ -33,10 +34,14 @@ def lid_closure(rings: LidRings, neutral: np.ndarray, blink: np.ndarray) -> floa
 
 def _widest(rings: LidRings, V: np.ndarray, along_opening: np.ndarray, across: np.ndarray) -> float:
     """Greatest height, mm, of the inner edge of the upper lid over that of the lower one at the same place."""
-    upper, lower = V[rings.upper[0]], V[rings.lower[0]]
-    order = np.argsort(lower @ along_opening, kind="stable")
-    below = np.interp(upper @ along_opening, (lower @ along_opening)[order], (lower @ across)[order])
-    return float((upper @ across - below)[CORNER:-CORNER].max())
+    front = np.column_stack([along_opening, across])
+    upper, lower = V[rings.upper[0]] @ front, V[rings.lower[0]] @ front
+    order = np.argsort(lower[:, 0], kind="stable")
+    height = upper[:, 1] - np.interp(upper[:, 0], lower[order, 0], lower[order, 1])
+    # Beside the steep ends of a slanted opening the other lid is nearer than it is below.
+    curve = at_shares(np.linspace(0, 1, FINE), along(lower), lower)
+    nearest = np.linalg.norm(upper[:, None] - curve, axis=2).min(1)
+    return float(np.minimum(height, nearest)[CORNER:-CORNER].max())
 
 
 def opening_gaps(rings: LidRings, V: np.ndarray, across: np.ndarray) -> np.ndarray:

@@ -65,7 +65,7 @@ def lid_rings(model: MorphableModel, side: str) -> LidRings:
     rows = [_loop({v: sorted(neighbours.get(v, set()) & set(rim.tolist())) for v in rim.tolist()})]
     taken = set(np.flatnonzero(model.region(f"socket_{side}")).tolist()) | set(rim.tolist())
     while len(rows) < ROWS:
-        outwards = [neighbours[v] - taken for v in rows[-1]]
+        outwards = [neighbours.get(v, set()) - taken for v in rows[-1]]
         if len(rows[-1]) != len(rim) or any(len(found) != 1 for found in outwards):
             raise ValueError(f"model: expected {ROWS} rings of quads around socket_{side}")
         rows.append([found.pop() for found in outwards])
