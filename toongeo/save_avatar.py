@@ -32,7 +32,6 @@ from toongeo.io.write_usdz import usd_modules
 from toongeo.model.expression_schemes import PRESETS, SCHEMES
 from toongeo.named_shapes import PLAYER_MESHES, PLAYER_ROOT, Names, named_shapes, renamed_scene
 from toongeo.pipeline import Rig
-from toongeo.pipeline.rig.gaze import SIDEWAYS, UPDOWN
 from toongeo.render import sample_image, uv_to_px
 
 if TYPE_CHECKING:
@@ -117,12 +116,13 @@ def _write_vrm(
     scene = avatar_scene(avatar, crop=crop, textured=_check_texture(texture) is not None)
     # Bones turn the eyes, which therefore need no targets; the lids that follow are the head's.
     still = (replace(m, targets=None, target_names=()) if m.name.startswith("eye_") else m for m in scene.meshes)
+    sideways, updown = avatar.eyes.turn.mean(0).tolist()
     write_vrm(
         path,
         Scene(tuple(still)),
         {**SCHEMES["vrm"], **SCHEMES["arkit"]},
         meta=meta,
-        gaze_degrees=(SIDEWAYS, UPDOWN),
+        gaze_degrees=(sideways, updown),
         normal_deltas=normals,
         tolerance_mm=EXACT_MM,
         picture=texture or "png",

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
-from toongeo.pipeline import Rig, align_face, build_rig, close_lids, fit_3dmm
+from toongeo.pipeline import Rig, align_face, build_rig, fit_3dmm, fit_lids
 
 __all__ = ["LandmarkRig"]
 
@@ -57,7 +57,7 @@ class LandmarkRig:
         """
         fit = fit_3dmm(None, landmarks)
         face = align_face(fit, np.asarray(landmarks, np.float64))
-        return cls.of_rig(close_lids(face, build_rig(face)), face.landmark_vertices)
+        return cls.of_rig(fit_lids(face, build_rig(face))[0], face.landmark_vertices)
 
     @classmethod
     def of_frames(cls, frames: ArrayLike) -> LandmarkRig:
