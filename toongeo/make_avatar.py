@@ -2,16 +2,20 @@
 
 import dataclasses
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Literal
 
 import numpy as np
 
 from toongeo.avatar import Avatar
 from toongeo.avatar_report import AvatarReport, landmark_errors, shape_warnings
+from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
+    AlignedFace,
+    FaceFit,
     align_face,
     bake_eyes,
     bake_texture,
@@ -29,6 +33,10 @@ from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
 
 STAGES = ("fit", "parse", "align", "rig", "eyes", "texture", "report")
+ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
+    "cartoon": align_face,
+    "caricature": align_caricature,
+}
 
 
 def make_avatar(
@@ -39,6 +47,7 @@ def make_avatar(
     parser: FaceParser | None = None,
     snap: bool = False,
     photometric: bool = False,
+    method: Literal["cartoon", "caricature"] = "cartoon",
     texture_size: int = 1024,
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
@@ -58,6 +67,9 @@ def make_avatar(
         detector, which shrinks and shifts the eyes of drawings; points that were set by hand are better left alone.
     photometric : bool
         Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
+    method : {"cartoon", "caricature"}
+        How the fitted face comes to its landmarks: by :func:`toongeo.align_face`, or in the deformation space of
+        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``.
     texture_size : int
         Side of the texture atlas in texels.
     progress : callable, optional
@@ -71,8 +83,11 @@ def make_avatar(
     Raises
     ------
     ValueError
-        If the picture is not (H, W, 3) uint8, or the landmarks cannot belong to it.
+        If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, or the method is unknown.
     """
+    align = ALIGNERS.get(method)
+    if align is None:
+        raise ValueError(f"method: expected one of {', '.join(ALIGNERS)}, got {method!r}")
     check_image(img)
     check_size(texture_size)
     clock = _Clock(progress)
@@ -90,7 +105,7 @@ def make_avatar(
         clock.start("fit")
         fit = photometric_fit(img, fit, landmarks)
     clock.start("align")
-    face = align_face(fit, landmarks)
+    face = align(fit, landmarks)
     clock.start("rig")
     rig = close_lids(face, build_rig(face))
     clock.start("eyes")
