@@ -14,6 +14,7 @@ from toongeo.caricature.caricature_options import CaricatureOptions
 from toongeo.caricature.face_space import FaceSpace, face_space
 from toongeo.caricature.inner_parts import with_inner_parts
 from toongeo.caricature.landmark_mesh import LandmarkMesh
+from toongeo.caricature.level_camera import level_camera
 from toongeo.caricature.smooth_warp import smooth_warp
 from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
@@ -158,8 +159,9 @@ class _Alternation:
         fit = fit_3dmm(None, self.pixels, model=self.space.model) if start is None else start
         if fit.model is not self.space.model:
             raise ValueError("start: expected a fit of the space's model, got one of another")
-        camera = _orthographic(fit.camera)
-        face = align_face(fit, self.pixels)
+        at = fit.vertices[fit.landmark_vertices[self.seen]]
+        camera = level_camera(_orthographic(fit.camera), at, self.pixels[self.seen])
+        face = align_face(replace(fit, camera=camera), self.pixels)
         w = np.zeros((2, len(self.space.space.rotations)))
         return _State(w, camera, face.landmark_vertices, fit, face.vertices, face.vertices)
 
@@ -204,6 +206,7 @@ class _Alternation:
         """
         points = shape[self.space.rows(state.landmarks[self.seen])]
         camera = ScaledOrthographicCamera(*scaled_orthographic_pose(points, self.pixels[self.seen]))
+        camera = level_camera(camera, points, self.pixels[self.seen])
         basis = landmark_basis(self.space.model)
         landmarks = landmarks_seen(basis, shape[self.space.rows(basis.vertices)], camera.rotation)
         return replace(state, camera=camera, landmarks=landmarks)
