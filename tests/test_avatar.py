@@ -17,6 +17,24 @@ def test_neutral_vertices_are_the_aligned_face_if_it_shows_no_expression(avatar)
     np.testing.assert_array_equal(avatar.vertices(), avatar.face.vertices)
 
 
+def test_a_caricature_becomes_an_avatar_like_any_other(cartoon, tmp_path):
+    img, landmarks = cartoon("bad_guy")
+    result = make_avatar(img, landmarks, method="caricature", texture_size=256)
+    assert len(result.names) == 46
+    assert max(result.report.aligned.values()) < 1e-3 < max(result.report.coarse.values())
+    assert result.report.quality.intersecting_fraction < 1e-3
+    np.testing.assert_array_equal(result.vertices(), result.face.vertices)
+    closed = np.abs(result.vertices({"eyeBlinkLeft": 1.0}) - result.vertices()).max(axis=1)
+    assert closed[result.face.region("eyelid_upper_left")].max() > 2 > closed[result.face.region("jaw")].max()
+    result.save(tmp_path / "caricature.glb")
+    assert len(read_glb(tmp_path / "caricature.glb").json["images"]) == 1
+
+
+def test_unknown_methods_are_refused(cartoon):
+    with pytest.raises(ValueError, match="method: expected one of cartoon, caricature, got 'cubist'"):
+        make_avatar(*cartoon("bad_guy"), method="cubist")
+
+
 def test_names_and_vectors_say_the_same(avatar):
     weights = np.zeros(46)
     weights[avatar.names.index("jawOpen")] = 0.6

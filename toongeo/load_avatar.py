@@ -16,9 +16,9 @@ def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = 
     """Read a ``.glb`` that :meth:`toongeo.Avatar.save` wrote.
 
     Every field of the avatar comes back: to float32 from a plain file (lengths to 1e-6 of the size of the head), the
-    texture exactly; only the seconds of the reports are 0. A quantized file gives expressions that are off by less than 0.1 mm and the confidence of the
-    parse in 63 steps, one with ``texture="jpeg"`` the pixels of the JPEG, one with ``texture=None`` a texture of one
-    colour.
+    texture exactly; only the seconds of the reports are 0. A quantized file gives expressions that are off by less
+    than 0.1 mm and the confidence of the parse in 63 steps, one with ``texture="jpeg"`` the pixels of the JPEG, one
+    with ``texture=None`` a texture of one colour.
 
     Parameters
     ----------

@@ -2,17 +2,20 @@
 
 import dataclasses
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Literal
 
 import numpy as np
 
 from toongeo.avatar import Avatar
 from toongeo.avatar_report import AvatarReport, landmark_errors, shape_warnings
+from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
+    AlignedFace,
+    FaceFit,
     aim_eyes,
     align_face,
     bake_eyes,
@@ -32,6 +35,10 @@ from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
 
 STAGES = ("fit", "parse", "align", "rig", "eyes", "texture", "report")
+ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
+    "cartoon": align_face,
+    "caricature": align_caricature,
+}
 
 
 def make_avatar(
@@ -44,6 +51,7 @@ def make_avatar(
     photometric: bool = False,
     neutral: bool = True,
     gain: float | Literal["auto"] = 1.0,
+    method: Literal["cartoon", "caricature"] = "cartoon",
     texture_size: int = 1024,
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
@@ -69,6 +77,9 @@ def make_avatar(
         it is drawn.
     gain : float or "auto"
         Strength of the expressions; see :func:`toongeo.build_rig`.
+    method : {"cartoon", "caricature"}
+        How the fitted face comes to its landmarks: by :func:`toongeo.align_face`, or in the deformation space of
+        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``.
     texture_size : int
         Side of the texture atlas in texels.
     progress : callable, optional
@@ -82,8 +93,11 @@ def make_avatar(
     Raises
     ------
     ValueError
-        If the picture is not (H, W, 3) uint8, or the landmarks cannot belong to it.
+        If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, or the method is unknown.
     """
+    align = ALIGNERS.get(method)
+    if align is None:
+        raise ValueError(f"method: expected one of {', '.join(ALIGNERS)}, got {method!r}")
     check_image(img)
     check_size(texture_size)
     clock = _Clock(progress)
@@ -101,7 +115,7 @@ def make_avatar(
         clock.start("fit")
         fit = photometric_fit(img, fit, landmarks)
     clock.start("align")
-    face = align_face(fit, landmarks)
+    face = align(fit, landmarks)
     clock.start("rig")
     at_rest = neutral_face(face) if neutral else face
     rig = fit_mouth(at_rest, build_rig(at_rest, gain=gain))

@@ -161,6 +161,13 @@ def test_a_ridge_makes_weights_smaller(small, rng):
     assert sizes[0] > sizes[1] > sizes[2]
 
 
+def test_a_ridge_pulls_towards_its_centre(small, rng):
+    space, _ = small
+    P, centre = space.vertices(rng.normal(size=(2, 3))), rng.normal(size=(2, 3))
+    far = [np.linalg.norm(space.fit(P, ridge=ridge, centre=centre).w - centre) for ridge in (0.0, 0.1, 10.0)]
+    assert far[0] > far[1] > far[2]
+
+
 def test_a_file_gives_the_same_space(small, tmp_path):
     space, _ = small
     space.save(tmp_path / "space.npz")
@@ -190,6 +197,16 @@ def test_bad_shapes_are_refused(mesh):
         DeformationSpace.from_meshes(flat, F, [V, V])
 
 
+def test_references_with_degenerate_rings_are_refused(mesh):
+    V, F = mesh
+    alone = np.vstack([V, [9.0, 9.0, 9.0]])
+    with pytest.raises(ValueError, match="V: expected every vertex in a triangle, got 1 in none"):
+        DeformationSpace.from_meshes(alone, F, [alone, alone])
+    needle, sliver = np.array([[0.0, 0, 0], [1, 0, 0], [2, 1e-6, 0]]), [[0, 1, 2]]
+    with pytest.raises(ValueError, match="V: expected"):
+        DeformationSpace.from_meshes(needle, sliver, [needle, needle])
+
+
 def test_bad_weights_are_refused(small):
     space, _ = small
     with pytest.raises(ValueError, match=r"w: expected shape \(3,\) or \(2, 3\), got \(4,\)"):
@@ -198,6 +215,8 @@ def test_bad_weights_are_refused(small):
         space.vertices([0, 0, np.nan])
     with pytest.raises(ValueError, match=r"start: expected shape \(3,\) or \(2, 3\)"):
         space.fit(space.reference, start=[1.0])
+    with pytest.raises(ValueError, match=r"centre: expected shape \(3,\) or \(2, 3\)"):
+        space.fit(space.reference, centre=[1.0])
     with pytest.raises(ValueError, match=r"P: expected shape \(184, 3\), got \(3, 3\)"):
         space.fit(np.eye(3))
     with pytest.raises(ValueError, match="ridge: expected a finite number >= 0, got -1"):

@@ -77,7 +77,7 @@ def _input(img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
 
 def _overlay(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
     corner, scale = _frame(landmarks, tile)
-    camera = avatar.fit.camera.cropped(corner, scale)
+    camera = avatar.face.camera.cropped(corner, scale)
     face = avatar.render(size=tile, camera=camera, textured=False).astype(float)
     return np.rint(0.45 * _window(img, corner, scale, tile) + 0.55 * face).astype(np.uint8)
 

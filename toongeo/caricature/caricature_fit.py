@@ -12,6 +12,7 @@ from toongeo._read_only import read_only
 from toongeo.caricature.face_space import FaceSpace
 from toongeo.geometry import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.protocols import HeadCamera
 
 __all__ = ["CaricatureFit", "CaricatureReport"]
@@ -26,9 +27,9 @@ class CaricatureReport:
     Attributes
     ----------
     iterations : int
-        P'-steps.
+        P'-steps up to the result.
     converged : bool
-        Whether E_def changed by less than the tolerance in the last one.
+        Whether E_def fell by less than the tolerance after it, or in it.
     rms_px : float
         ``sqrt(E_lan / k)`` over the k landmarks that are there (Eq. 20).
     max_px : float
@@ -62,6 +63,8 @@ class CaricatureFit:
     landmark_vertices : (68,) int64
         Vertices of the landmarks as this pose shows them.
     space : FaceSpace
+    fit : FaceFit
+        The ordinary face from which it was deformed.
     report : CaricatureReport
     """
 
@@ -71,6 +74,7 @@ class CaricatureFit:
     camera: HeadCamera
     landmark_vertices: NDArray[np.int64]
     space: FaceSpace
+    fit: FaceFit
     report: CaricatureReport
 
     def __post_init__(self) -> None:

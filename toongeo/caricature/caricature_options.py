@@ -15,18 +15,21 @@ class CaricatureOptions:
 
     Attributes
     ----------
+    looseness : float
+        Of the smooth map by which the face follows the mesh of the weights (`smooth_warp`); 0 interpolates the skin of
+        that mesh at two hundred places.
     smoothness : float
-        Weight of ``tr(r^T L^2 r)`` against ``tr(r^T L r)``, where ``r`` is what the landmarks add to the mesh of the
-        weights and L the cotangent Laplacian. 0 is the P'-step of the paper, which leaves a spike at each landmark.
-    lip_weight, lid_weight : float
+        Weight of ``tr(r^T L^2 r)`` against ``tr(r^T L r)``, where ``r`` is what the landmarks add to the face that has
+        flowed to them and L the cotangent Laplacian. 0 is the P'-step of the paper, which leaves a spike at each
+        landmark.
+    rim_weight : float
         Weight of the rims of lips and lids between the landmarks, whose displacement is interpolated, as a fraction
-        of the landmarks' weight; 0 leaves them free. Lips touch, and cross where they are held loosely; lids are
-        apart, and crumple at their corners where they are held firmly.
+        of the landmarks' weight; 0 leaves them free.
     ridge : float
-        Weight of ``|w|^2`` in the w-step, as a fraction of the mean diagonal entry of its Gauss-Newton matrix (of the
-        scale/shear part). 0 is the paper's.
+        Weight of ``|w|^2`` (of the change of w, with a caricature to start from) in the w-step, as a fraction of the
+        mean diagonal entry of its Gauss-Newton matrix (of the scale/shear part). 0 is the paper's.
     tolerance : float
-        Relative change of E_def below which the alternation stops.
+        Relative fall of E_def below which the alternation stops.
     steps : int
         Of Levenberg-Marquardt in a w-step; the next P'-step moves its target anyway.
     tuck : bool
@@ -38,10 +41,10 @@ class CaricatureOptions:
         If a number is negative or not finite, or ``steps`` is below 1.
     """
 
+    looseness: float = 0.01
     smoothness: float = 100.0
-    lip_weight: float = 1e-3
-    lid_weight: float = 1e-5
-    ridge: float = 0.1
+    rim_weight: float = 0.01
+    ridge: float = 1.0
     tolerance: float = 1e-2
     steps: int = 3
     tuck: bool = True

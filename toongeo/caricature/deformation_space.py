@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -13,8 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.linalg import SuperLU
 
 from toongeo._read_only import read_only
-from toongeo.caricature.deformation_representation import deformation_representation, full, packed
+from toongeo.caricature.deformation_representation import full, packed
 from toongeo.caricature.fit_weights import WeightFit, WeightProblem
+from toongeo.caricature.represented import component_means, represented
+from toongeo.caricature.space_file import read_arrays, write_arrays
 from toongeo.geometry import validate_mesh, vertex_components
 from toongeo.geometry._factor import factor_spd, solve
 from toongeo.geometry._small_matrices import product
@@ -22,13 +23,12 @@ from toongeo.geometry.one_rings import OneRings, one_rings
 from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.rotation_exp import rotation_exp
 from toongeo.geometry.validate_mesh import validate_vertices
-from toongeo.io.atomic_write import atomic_write
 
 __all__ = ["DeformationSpace"]
 
 Floats = NDArray[np.float64]
 
-_FORMAT = 1
+_STORED = ("reference", "faces", "rotations", "stretches", "offsets")
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,23 +105,7 @@ class DeformationSpace:
             If a mesh is malformed, has another number of vertices than the reference or they are fewer than two; if
             the reference has a triangle without area or a vertex whose edges do not span a plane.
         """
-        V, F = validate_mesh(V, F, names=("V_ref", "F"))
-        if len(shapes) < 2:
-            raise ValueError(f"shapes: expected at least 2, got {len(shapes)}")
-        checked = [validate_vertices(shape, name=f"shapes[{k}]") for k, shape in enumerate(shapes)]
-        for k, shape in enumerate(checked):
-            if shape.shape != V.shape:
-                raise ValueError(f"shapes[{k}]: expected {len(V)} vertices as the reference has, got {len(shape)}")
-        rings = one_rings(V, F)
-        component = vertex_components(F, len(V))
-        rotations = np.empty((len(checked), 3, len(V)), np.float32)
-        stretches = np.empty((len(checked), 6, len(V)), np.float32)
-        offsets = np.empty((len(checked), int(component.max()) + 1, 3))
-        for k, shape in enumerate(checked):
-            moved = _rigidly_aligned(shape, V) if align else shape
-            rotations[k], stretches[k] = deformation_representation(rings, moved)
-            offsets[k] = _means(moved - V, component)
-        return cls(V, F, rotations, stretches, offsets, rings)
+        return cls(*represented(V, F, shapes, align=align))
 
     @cached_property
     def rings(self) -> OneRings:
@@ -203,10 +187,16 @@ class DeformationSpace:
     def placed(self, displacement: Floats, w: Floats) -> Floats:
         """Displacements (n, 3) with the mean of each component where the shapes have it, weighted by ``w`` (2, l)."""
         wanted = np.tensordot(w.mean(axis=0), self.offsets, 1)
-        return displacement + (wanted - _means(displacement, self.component))[self.component]
+        return displacement + (wanted - component_means(displacement, self.component))[self.component]
 
     def fit(
-        self, P: ArrayLike, *, start: ArrayLike | None = None, ridge: float = 0.0, iterations: int = 50
+        self,
+        P: ArrayLike,
+        *,
+        start: ArrayLike | None = None,
+        ridge: float = 0.0,
+        centre: ArrayLike | None = None,
+        iterations: int = 50,
     ) -> WeightFit:
         """Weights whose deformation gradients come nearest to those of a mesh (Eq. 9).
 
@@ -217,7 +207,9 @@ class DeformationSpace:
         start : (l,) or (2, l) float, optional
             Zeros if None.
         ridge : float
-            Weight of ``|w|^2``, as a fraction of the mean diagonal of the Gauss-Newton matrix at w = 0.
+            Weight of ``|w - centre|^2``, as a fraction of the mean diagonal of the Gauss-Newton matrix at w = 0.
+        centre : (l,) or (2, l) float, optional
+            Zeros if None.
         iterations : int
             At most so many steps of Levenberg-Marquardt.
 
@@ -228,13 +220,14 @@ class DeformationSpace:
         Raises
         ------
         ValueError
-            If `P` or `start` do not fit, or `ridge` or `iterations` are negative.
+            If `P`, `start` or `centre` do not fit, or `ridge` or `iterations` are negative.
         """
         P = validate_vertices(P, name="P")
         if P.shape != self.reference.shape:
             raise ValueError(f"P: expected shape {self.reference.shape}, got {P.shape}")
         w = np.zeros((2, len(self.rotations))) if start is None else self.checked_weights(start, "start")
-        return WeightProblem(self, P).solve(w, ridge=ridge, iterations=iterations)
+        middle = 0.0 if centre is None else self.checked_weights(centre, "centre")
+        return WeightProblem(self, P).solve(w, ridge=ridge, centre=middle, iterations=iterations)
 
     def energy(self, P: ArrayLike, w: ArrayLike) -> float:
         """``E_def`` of Eq. 6: what deformation gradients T(w) leave of the edges of a mesh; unit of P, squared."""
@@ -258,17 +251,7 @@ class DeformationSpace:
         OSError
             If it cannot be written.
         """
-        buffer = io.BytesIO()
-        np.savez(
-            buffer,
-            format=np.array(_FORMAT),
-            reference=self.reference,
-            faces=self.faces,
-            rotations=self.rotations,
-            stretches=self.stretches,
-            offsets=self.offsets,
-        )
-        atomic_write({path: buffer.getvalue()})
+        write_arrays(path, {name: getattr(self, name) for name in _STORED})
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> DeformationSpace:
@@ -281,23 +264,5 @@ class DeformationSpace:
         ValueError
             If it holds something else.
         """
-        with np.load(path, allow_pickle=False) as archive:
-            fields = ("reference", "faces", "rotations", "stretches", "offsets")
-            missing = [name for name in ("format", *fields) if name not in archive]
-            if missing or archive["format"] != _FORMAT:
-                what = f"no {missing[0]!r}" if missing else f"format {archive['format']}"
-                raise ValueError(f"path: expected a deformation space of format {_FORMAT}, got {what} in {path}")
-            return cls(*(archive[name] for name in fields))
-
-
-def _means(x: Floats, component: NDArray[np.int64]) -> Floats:
-    """Mean (c, 3) over each component of values (n, 3)."""
-    return np.stack([np.bincount(component, column) for column in x.T], 1) / np.bincount(component)[:, None]
-
-
-def _rigidly_aligned(P: Floats, V: Floats) -> Floats:
-    """``P`` turned and shifted onto ``V``, in the least-squares sense (Kabsch)."""
-    A, B = P - P.mean(0), V - V.mean(0)
-    U, _, Vt = np.linalg.svd(B.T @ A)
-    rotation = (U * [1.0, 1.0, np.sign(np.linalg.det(U @ Vt))]) @ Vt
-    return A @ rotation.T + V.mean(0)
+        reference, faces, rotations, stretches, offsets = read_arrays(path, _STORED).values()
+        return cls(reference, faces, rotations, stretches, offsets)

@@ -61,8 +61,8 @@ def exaggerate(fit: FaceFit | CaricatureFit, amount: float, *, space: FaceSpace 
     scale, rotation, shift = similarity(face, fit.vertices[space.vertices])
     V = with_inner_parts(space, fit.vertices, scale * P @ rotation.T + shift, tuck=amount != 0)
     report = CaricatureReport(0, True, np.nan, np.nan, (), 0.0)
-    camera = fit.camera
-    return CaricatureFit(V, w, (), camera, fit.landmark_vertices, space, report)
+    ordinary = fit.fit if isinstance(fit, CaricatureFit) else fit
+    return CaricatureFit(V, w, (), fit.camera, fit.landmark_vertices, space, ordinary, report)
 
 
 def _upright(V: NDArray[np.float64], space: FaceSpace) -> NDArray[np.float64]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,14 +14,20 @@ from toongeo.caricature.caricature_options import CaricatureOptions
 from toongeo.caricature.face_space import FaceSpace, face_space
 from toongeo.caricature.inner_parts import with_inner_parts
 from toongeo.caricature.landmark_mesh import LandmarkMesh
+from toongeo.caricature.level_camera import level_camera
+from toongeo.caricature.smooth_warp import smooth_warp
 from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
+from toongeo.pipeline.align.align_face import align_face
+from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.rim_anchors import rim_anchors
+from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.fit.contour import landmarks_seen
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
 from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
+from toongeo.protocols import HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["fit_caricature"]
@@ -36,19 +42,21 @@ def fit_caricature(
     space: FaceSpace | None = None,
     weight: float = 1e5,
     iterations: int = 4,
-    start: CaricatureFit | None = None,
+    start: CaricatureFit | FaceFit | None = None,
     options: CaricatureOptions | None = None,
 ) -> CaricatureFit:
     """A face as exaggerated as its landmarks ask for (Wu et al. 2018, Algorithm 1).
 
     Minimizes ``E_def(P', w) + weight * E_lan / s^2`` (Eq. 14) over the mesh P' and the weights w of a deformation
-    space made of ordinary faces, in turns: the pose and the silhouette's landmark vertices for the face of w; the mesh
-    between T(w) and the landmarks (Eq. 15); the weights that explain this mesh (Eq. 9). It begins at w = 0 and the
-    pose of `fit_3dmm`.
+    space made of ordinary faces, in turns: the weights that explain the mesh (Eq. 9); the pose and the silhouette's
+    landmark vertices for the face of w (Eq. 13); the mesh between T(w) and the landmarks (Eq. 15).
 
-    Two things are added to the paper's energy, both small where the space explains the landmarks, and both can be set
-    to zero in the options: ``smoothness``, without which every landmark is the tip of a spike, and ``ridge``, without
-    which weights grow in directions that the landmarks do not tell.
+    Three things differ from the paper, because its energy alone folds lips and lids, makes a spike of each landmark,
+    and predicts badly what no landmark shows. It begins with the mesh that `align_face` gives instead of w = 0. A
+    P'-step does not take the mesh of w as it is, whose lips and lids can pass through each other: the aligned face
+    follows it by a smooth map of space (`looseness` in the options), and flows on to the landmarks by the likeliest
+    motion when left and right move alike; what is then left of the way, next to nothing, is closed by the energy
+    (with `smoothness`). And `ridge` keeps weights small that the landmarks do not tell.
 
     Parameters
     ----------
@@ -57,16 +65,18 @@ def fit_caricature(
     landmarks : (68, 2) array_like, px
         iBUG-68 order; x right, y down, integer = pixel centre. NaN rows are missing.
     space : FaceSpace, optional
-        `face_space` of the default model if None.
+        `face_space` of the default model, or that of ``start``, if None.
     weight : float > 0
         Lambda of Eq. 14. The paper's, 0.01, mixes px^2 with the model's unit; here E_lan is measured in (px / s)^2,
         with the camera's scale s in px/mm, so that both terms are mm^2 and the picture's resolution changes nothing.
         The default leaves about a hundredth of a millimetre.
     iterations : int
-        P'-steps, at most.
-    start : CaricatureFit, optional
-        Begin at its weights, and keep its camera and its landmark vertices. With two iterations a new expression of
-        a fitted face takes a fraction of a second.
+        P'-steps, at most. It ends earlier when E_def falls by less than the tolerance of the options; if it rises, as
+        another silhouette can make it, the step before is the result.
+    start : CaricatureFit or FaceFit, optional
+        Of a caricature: go on from it with its weights, its camera and its landmark vertices, keeping also what its
+        space does not explain. The same landmarks give nearly the same face, and with one iteration a new expression
+        takes a third of a second. Of an ordinary face: begin with this one instead of the `fit_3dmm` of the landmarks.
     options : CaricatureOptions, optional
 
     Returns
@@ -78,7 +88,7 @@ def fit_caricature(
     ValueError
         If the picture is not (H, W, 3) uint8; if the landmarks have another shape, hold infinities, are fewer than 6,
         lie on a line or outside the picture; if weight or iterations are not positive; or if ``start`` is of another
-        space.
+        space or model, or has a perspective camera.
 
     References
     ----------
@@ -104,41 +114,36 @@ def fit_caricature(
         raise ValueError(f"weight: expected a finite number > 0, got {weight}")
     if iterations < 1:
         raise ValueError(f"iterations: expected at least 1, got {iterations}")
-    space = face_space() if space is None else space
-    if start is not None and start.space is not space:
-        raise ValueError("start: expected a fit of the same space, got one of another")
+    if space is None:
+        space = start.space if isinstance(start, CaricatureFit) else face_space(start.model if start else None)
     solver = _Alternation(space, pixels, weight, CaricatureOptions() if options is None else options)
-    state = solver.first() if start is None else _resumed(start)
-    before = solver.coarse.vertices if start is None else start.vertices
-    P, state, energies = solver.run(state, iterations, posed=start is None)
-    if start is None:
-        before = before @ solver.first().camera.rotation.T @ state.camera.rotation
-    V = with_inner_parts(space, before, P, tuck=solver.options.tuck)
+    state = solver.resumed(start) if isinstance(start, CaricatureFit) else solver.first(start)
+    P, state, energies, converged = solver.run(state, iterations)
+    V = with_inner_parts(space, state.before, P, tuck=solver.options.tuck)
     error = np.linalg.norm((state.camera.project(V[state.landmarks]) - pixels)[solver.seen], axis=1)
     report = CaricatureReport(
         iterations=len(energies),
-        converged=solver.settled(energies),
+        converged=converged,
         rms_px=float(np.sqrt((error**2).mean())),
         max_px=float(error.max()),
         warnings=tuple(warnings),
         seconds=time.perf_counter() - started,
     )
-    return CaricatureFit(V, state.w, tuple(energies), state.camera, state.landmarks, space, report)
+    return CaricatureFit(V, state.w, tuple(energies), state.camera, state.landmarks, space, state.fit, report)
 
 
 @dataclass(frozen=True, eq=False)
 class _State:
-    """What changes from step to step, but for the mesh."""
+    """What changes from step to step (w, camera, landmarks), and what all began with."""
 
     w: Floats  # (2, l)
     camera: ScaledOrthographicCamera
     landmarks: NDArray[np.int64]  # (68,)
-
-
-def _resumed(start: CaricatureFit) -> _State:
-    if not isinstance(start.camera, ScaledOrthographicCamera):
-        raise ValueError(f"start: expected a scaled orthographic camera, got {type(start.camera).__name__}")
-    return _State(start.w, start.camera, start.landmark_vertices)
+    fit: FaceFit  # the ordinary face
+    before: Floats  # (n, 3) whose inner parts are right
+    V: Floats  # (n, 3) on the landmarks, or nearly
+    left: Floats | float = 0.0  # (k, 3) what the mesh of w lacked at the start
+    posed: bool = True  # whether pose and silhouette are found too
 
 
 class _Alternation:
@@ -149,34 +154,50 @@ class _Alternation:
         self.seen = np.flatnonzero(np.isfinite(pixels).all(axis=1))
         self._mesh = _landmark_mesh(space, options.smoothness)
 
-    @cached_property
-    def coarse(self) -> FaceFit:
-        """The ordinary face nearest to the landmarks: it gives the first pose, and the opening of mouth and eyes."""
-        return fit_3dmm(None, self.pixels, model=self.space.model)
+    def first(self, start: FaceFit | None) -> _State:
+        """The ordinary face nearest to the landmarks, aligned with them."""
+        fit = fit_3dmm(None, self.pixels, model=self.space.model) if start is None else start
+        if fit.model is not self.space.model:
+            raise ValueError("start: expected a fit of the space's model, got one of another")
+        at = fit.vertices[fit.landmark_vertices[self.seen]]
+        camera = level_camera(_orthographic(fit.camera), at, self.pixels[self.seen])
+        face = align_face(replace(fit, camera=camera), self.pixels)
+        w = np.zeros((2, len(self.space.space.rotations)))
+        return _State(w, camera, face.landmark_vertices, fit, face.vertices, face.vertices)
 
-    def first(self) -> _State:
-        camera = self.coarse.camera
-        assert isinstance(camera, ScaledOrthographicCamera)
-        return _State(np.zeros((2, len(self.space.space.rotations))), camera, self.coarse.landmark_vertices)
+    def resumed(self, start: CaricatureFit) -> _State:
+        """A caricature that has flowed to the landmarks."""
+        if start.space is not self.space:
+            raise ValueError("start: expected a fit of the same space, got one of another")
+        camera, before, landmarks = _orthographic(start.camera), start.vertices, start.landmark_vertices
+        left = before[self.space.vertices] - self.space.space.vertices(start.w)
+        V, _ = symmetric_flow(self.space.model, camera, before, landmarks, self.pixels, "scaled", False)
+        return _State(start.w, camera, landmarks, start.fit, before, V, left, posed=False)
 
-    def run(self, state: _State, iterations: int, *, posed: bool) -> tuple[Floats, _State, list[float]]:
-        """Mesh (k, 3), state and E_def after each P'-step; ``posed``: whether the pose is found too."""
-        space = self.space.space
-        energies: list[float] = []
-        while True:
-            shape = space.vertices(state.w)
-            if posed and energies:
-                state = self._posed(shape, state)
-            P = self._mesh_step(shape, state)
-            energies.append(space.energy(P, state.w))
-            if len(energies) == iterations or self.settled(energies):
-                return P, state, energies
-            w = space.fit(P, start=state.w, ridge=self.options.ridge, iterations=self.options.steps).w
-            state = replace(state, w=w)
+    def run(self, state: _State, iterations: int) -> tuple[Floats, _State, list[float], bool]:
+        """Mesh (k, 3) and state of the least E_def, E_def after the P'-steps up to it, and whether it fell no more."""
+        best = self._turn(state.V[self.space.vertices], state, state.w)
+        energies = [best[2]]
+        for _ in range(iterations - 1):
+            turn = self._turn(best[0], best[1], state.w)
+            if turn[2] < energies[-1]:
+                best = turn
+                energies.append(turn[2])
+            if turn[2] > (1 - self.options.tolerance) * energies[-2 if turn is best else -1]:
+                return *best[:2], energies, True
+        return *best[:2], energies, False
 
-    def settled(self, energies: list[float]) -> bool:
-        """Whether E_def hardly changed in the last step."""
-        return len(energies) > 1 and abs(energies[-2] - energies[-1]) <= self.options.tolerance * energies[-2]
+    def _turn(self, P: Floats, state: _State, centre: Floats) -> tuple[Floats, _State, float]:
+        """w-step, pose and P'-step: mesh (k, 3), state and E_def."""
+        space, options, left = self.space.space, self.options, state.left
+        steps = options.steps if state.posed else 1  # weights that change little
+        w = space.fit(P - left, start=state.w, ridge=options.ridge, centre=centre, iterations=steps).w
+        shape = space.vertices(w) + left
+        state = replace(state, w=w)
+        if state.posed:
+            state = self._posed(shape, state)
+        P, state = self._mesh_step(shape, state)
+        return P, state, space.energy(P - left, w)
 
     def _posed(self, shape: Floats, state: _State) -> _State:
         """Camera that sees the landmarks of the face of w most nearly in their places (Eq. 13), and its silhouette.
@@ -185,23 +206,41 @@ class _Alternation:
         """
         points = shape[self.space.rows(state.landmarks[self.seen])]
         camera = ScaledOrthographicCamera(*scaled_orthographic_pose(points, self.pixels[self.seen]))
+        camera = level_camera(camera, points, self.pixels[self.seen])
         basis = landmark_basis(self.space.model)
         landmarks = landmarks_seen(basis, shape[self.space.rows(basis.vertices)], camera.rotation)
         return replace(state, camera=camera, landmarks=landmarks)
 
-    def _mesh_step(self, shape: Floats, state: _State) -> Floats:
-        """The P'-step (Eq. 15), with the rims of lids and lips between the landmarks."""
+    def _mesh_step(self, shape: Floats, state: _State) -> tuple[Floats, _State]:
+        """The P'-step (Eq. 15): after the mesh of w, then with the likeliest flow, then exactly to the landmarks."""
+        model, camera = self.space.model, state.camera
+        V = smooth_warp(self.space, state.V, shape, self.options.looseness)
+        if state.posed:  # else the pose is that in which V has flowed, and the warp takes it but little off
+            V, landmarks = symmetric_flow(model, camera, V, state.landmarks, self.pixels, "scaled", True)
+            state = replace(state, landmarks=landmarks)
+        anchors, targets_px, fractions = self._anchors(V, state)
+        reference, P = self.space.space.reference, V[self.space.vertices]
+        rows, weights = self.space.rows(anchors), self.weight * fractions
+        return reference + self._mesh.displacements(P - reference, camera, rows, targets_px, weights), state
+
+    def _anchors(self, V: Floats, state: _State) -> tuple[NDArray[np.int64], Floats, Floats]:
+        """Vertices (a,), pixels (a, 2) and weights (a,) of the landmarks and of the rims between them."""
+        model, camera = self.space.model, state.camera
         vertices, first = np.unique(state.landmarks[self.seen], return_index=True)
-        camera, model = state.camera, self.space.model
-        missing_px = self.pixels - camera.project(shape[self.space.rows(state.landmarks)])
-        rims, shift_px = rim_anchors(model, missing_px)
-        fraction = np.where(model.region("lips")[rims], self.options.lip_weight, self.options.lid_weight)
-        used = (fraction > 0) & ~np.isin(rims, vertices)
-        rims, shift_px, fraction = self.space.rows(rims[used]), shift_px[used], fraction[used]
-        targets_px = np.vstack([self.pixels[self.seen][first], camera.project(shape[rims]) + shift_px])
-        weights = self.weight * np.r_[np.ones(len(vertices)), fraction]
-        reference, rows = self.space.space.reference, np.r_[self.space.rows(vertices), rims]
-        return reference + self._mesh.displacements(shape - reference, camera, rows, targets_px, weights)
+        rims, shift_px = rim_anchors(model, self.pixels - camera.project(V[state.landmarks]))
+        used = ~np.isin(rims, vertices) & (self.options.rim_weight > 0)
+        rims, shift_px = rims[used], shift_px[used]
+        anchors, given = np.r_[vertices, rims], np.arange(len(vertices) + len(rims)) < len(vertices)
+        targets_px = np.vstack([self.pixels[self.seen][first], camera.project(V[rims]) + shift_px])
+        # The depth stays: rims of a mouth that is drawn shut may touch.
+        targets_px, _ = keep_rims_apart(model, camera, V, anchors, targets_px, given)
+        return anchors, targets_px, np.where(given, 1.0, self.options.rim_weight)
+
+
+def _orthographic(camera: HeadCamera) -> ScaledOrthographicCamera:
+    if not isinstance(camera, ScaledOrthographicCamera):
+        raise ValueError(f"start: expected a scaled orthographic camera, got {type(camera).__name__}")
+    return camera
 
 
 @lru_cache(maxsize=2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -120,48 +121,52 @@ class WeightProblem:
             RS = flat @ _applied(mixed, space.stretches).T
         return np.block([[RR, RS], [RS.T, space.stretch_gram]]).astype(np.float64)
 
-    def solve(self, w: Floats, *, ridge: float = 0.0, iterations: int = 50) -> WeightFit:
-        """Levenberg-Marquardt from weights (2, l)."""
+    def solve(self, w: Floats, *, ridge: float = 0.0, centre: Floats | float = 0.0, iterations: int = 50) -> WeightFit:
+        """Levenberg-Marquardt from weights (2, l), with a ridge around ``centre``."""
         if not (np.isfinite(ridge) and ridge >= 0):
             raise ValueError(f"ridge: expected a finite number >= 0, got {ridge}")
         if iterations < 0:
             raise ValueError(f"iterations: expected a number >= 0, got {iterations}")
         bound = ridge * self._ridge_unit()
-        energies = [self.energy(w) + bound * float((w * w).sum())]
+
+        def ridged(w: Floats) -> float:
+            return self.energy(w) + bound * float(((w - centre) ** 2).sum())
+
+        energies = [ridged(w)]
         damping, converged = _FIRST_DAMPING, False
         for _ in range(iterations):
             _, half, H = self.gradient(w)
-            slope = (half + bound * w).ravel()
+            slope = (half + bound * (w - centre)).ravel()
             H[np.diag_indices_from(H)] += bound
-            w, energy, damping = self._step(w, energies[-1], slope, H, damping, bound)
+            w, energy, damping = _step(ridged, w, energies[-1], slope, H, damping)
             energies.append(energy)
             if energies[-2] - energy <= _TOLERANCE * energies[-2]:
                 converged = True
                 break
-        return WeightFit(w, energies[-1] - bound * float((w * w).sum()), tuple(energies), converged)
-
-    def _step(
-        self, w: Floats, energy: float, slope: Floats, H: Floats, damping: float, bound: float
-    ) -> tuple[Floats, float, float]:
-        """One damped step that does not raise the energy; the same weights if there is none."""
-        diagonal = H.diagonal()
-        # A shape that does not deform has no row in H; it keeps its weight.
-        floor = np.finfo(np.float32).eps * diagonal.max() or 1.0
-        while damping <= _MOST_DAMPING:
-            A = H.copy()
-            A[np.diag_indices_from(A)] += np.maximum(damping * diagonal, floor)
-            with one_thread():
-                step = cho_solve(cho_factor(A, lower=True), slope).reshape(w.shape)
-            new = w - step
-            reached = self.energy(new) + bound * float((new * new).sum())
-            if reached <= energy:
-                return new, reached, max(damping / 10, 1e-9)
-            damping *= 10
-        return w, energy, damping
+        return WeightFit(w, energies[-1] - bound * float(((w - centre) ** 2).sum()), tuple(energies), converged)
 
     def _ridge_unit(self) -> float:
         """Mean diagonal entry of the stretch part, which no weights change."""
         return float(self._space.stretch_gram.diagonal().mean())
+
+
+def _step(
+    ridged: Callable[[Floats], float], w: Floats, energy: float, slope: Floats, H: Floats, damping: float
+) -> tuple[Floats, float, float]:
+    """One damped step that does not raise the energy; the same weights if there is none."""
+    diagonal = H.diagonal()
+    # A shape that does not deform has no row in H; it keeps its weight.
+    floor = np.finfo(np.float32).eps * diagonal.max() or 1.0
+    while damping <= _MOST_DAMPING:
+        A = H.copy()
+        A[np.diag_indices_from(A)] += np.maximum(damping * diagonal, floor)
+        with one_thread():
+            new = w - cho_solve(cho_factor(A, lower=True), slope).reshape(w.shape)
+        reached = ridged(new)
+        if reached <= energy:
+            return new, reached, max(damping / 10, 1e-9)
+        damping *= 10
+    return w, energy, damping
 
 
 def _rows(basis: NDArray[np.float32], field: Floats) -> Floats:

@@ -13,7 +13,7 @@ __all__ = ["tucked", "with_inner_parts"]
 
 Floats = NDArray[np.float64]
 
-_ROUNDS = 6
+_ROUNDS = 3
 _MARGIN = 0.3  # mm under the skin
 _STEP = 1.0  # mm a round, at most
 
@@ -43,7 +43,10 @@ def tucked(V: Floats, F: NDArray[np.int64], inner: NDArray[np.bool_], skin: NDAr
     millimetre. As a triangle may cross several, this takes a few rounds, until one does not help. The skin stays.
     """
     of_skin, inside = np.asarray(skin[F].all(axis=1)), np.asarray(inner[F].any(axis=1))
-    numbers = np.flatnonzero(of_skin | inside)
+    low, high = V[F[inside]].min(axis=(0, 1)), V[F[inside]].max(axis=(0, 1))
+    corners = V[F]
+    near = (corners.max(axis=1) >= low - _STEP).all(axis=1) & (corners.min(axis=1) <= high + _STEP).all(axis=1)
+    numbers = np.flatnonzero((of_skin & near) | inside)
     best, fewest = V, len(F) ** 2
     for _ in range(_ROUNDS):
         pairs = numbers[self_intersections(V, F[numbers])]

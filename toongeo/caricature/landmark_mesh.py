@@ -21,7 +21,7 @@ _FLIP = np.array([1.0, -1.0])
 class LandmarkMesh:
     """The P'-step, with everything kept that depends neither on the gradients nor on the pose.
 
-    Let ``r`` be what landmarks add to the mesh of the weights. ``E_def`` grows by ``2 tr(r^T L r)``, whose minimum
+    Let ``r`` be what landmarks add to the face. ``E_def`` grows by ``2 tr(r^T L r)``, whose minimum
     under point loads is a spike at each landmark; ``2 smoothness tr(r^T L^2 r)`` spreads the loads.
 
     In the camera's frame the coordinates are independent: a scaled orthographic camera sees x and y, and leaves
@@ -57,7 +57,7 @@ class LandmarkMesh:
         Parameters
         ----------
         u0 : (n, 3) float
-            Displacements of the mesh of the weights.
+            Displacements without the landmarks.
         camera : ScaledOrthographicCamera
         vertices : (k,) int
             Of the space, each once.

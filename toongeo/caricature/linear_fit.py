@@ -14,6 +14,7 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.contour import landmarks_seen
 from toongeo.pipeline.fit.landmark_basis import landmark_basis
 from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
+from toongeo.protocols import HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["LinearFit", "equations", "linear_fit", "posed", "ridge_solution"]
@@ -31,12 +32,12 @@ class LinearFit:
     Attributes
     ----------
     vertices : (n, 3) float64, mm, model frame
-    camera : ScaledOrthographicCamera
+    camera : HeadCamera
     landmark_vertices : (68,) int64
     """
 
     vertices: Floats
-    camera: ScaledOrthographicCamera
+    camera: HeadCamera
     landmark_vertices: NDArray[np.int64]
 
     def __post_init__(self) -> None:
@@ -44,7 +45,7 @@ class LinearFit:
 
     def project(self, points: ArrayLike) -> Floats:
         """Points (k, 3), mm, model frame -> pixels (k, 2)."""
-        return self.camera.project(points)
+        return self.camera.project(np.asarray(points, np.float64))
 
 
 def linear_fit(

@@ -11,7 +11,7 @@ __all__ = ["polar_decomposition"]
 
 Floats = NDArray[np.float64]
 
-_CHUNK = 8192  # matrices at a time: what they need stays in the cache
+_CHUNK = 16384  # matrices at a time: few enough for the cache, enough to make the calls cheap
 _STEPS = 3
 _CONVERGED = 1e-7  # excess of the determinant before the last step; the error after it is its square
 _SINGULAR = 1e-3  # determinant over the cubed norm, below which Newton's iteration gets slow or lost

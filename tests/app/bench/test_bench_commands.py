@@ -70,6 +70,21 @@ def test_table4_adds_up(folder, tmp_path, capsys):
     assert "paper 20.02 s" in capsys.readouterr().out
 
 
+def test_caricature_compares_the_baselines(folder, tmp_path, capsys):
+    (folder / "moustache_man.png").unlink()
+    assert main(["bench", "caricature", str(folder), "-o", str(tmp_path)]) == 0
+    rows = {row["method"]: row for row in rows_of(tmp_path / "caricature.csv") if row["picture"] not in ("mean", "sd")}
+    errors = {method: float(row["E_error"]) for method, row in rows.items()}
+    plain = {"3DMM", "3DMM(-)", "bilinear", "caricatured 3DMM", "fit_3dmm"}
+    assert plain < set(errors) and len(errors) == 11
+    bent = set(errors) - plain
+    assert max(errors[method] for method in bent) < 0.03 < min(errors[method] for method in plain)
+    ours, arap = rows["fit_caricature"], rows["fit_3dmm + ARAP"]
+    assert float(ours["bending"]) < float(arap["bending"]) and float(ours["held out"]) < float(arap["held out"])
+    assert rows["bilinear"]["held out"] == ""
+    assert "paper, Table 1" in capsys.readouterr().out
+
+
 def test_pairs_are_blind_and_score_goes_the_whole_way(folder, tmp_path, capsys):
     out = tmp_path / "pairs"
     assert main(["bench", "pairs", str(folder), "-o", str(out), "--seed", "7"]) == 0
@@ -100,7 +115,7 @@ def test_pairs_are_blind_and_score_goes_the_whole_way(folder, tmp_path, capsys):
     assert (out / "pair-01.png").read_bytes() == before
 
 
-@pytest.mark.parametrize("command", ["table1", "table2", "table4", "pairs"])
+@pytest.mark.parametrize("command", ["table1", "table2", "table4", "caricature", "pairs"])
 def test_bad_folders_are_one_line_and_exit_code_2(command, folder, tmp_path, capsys):
     (tmp_path / "empty").mkdir()
     (folder / "moustache_man.txt").unlink()
@@ -111,7 +126,7 @@ def test_bad_folders_are_one_line_and_exit_code_2(command, folder, tmp_path, cap
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("command", ["table1", "table2", "table4", "pairs"])
+@pytest.mark.parametrize("command", ["table1", "table2", "table4", "caricature", "pairs"])
 def test_an_output_that_is_a_file_is_refused_before_the_work(command, folder, tmp_path, capsys):
     (tmp_path / "out").write_text("precious")
     assert main(["bench", command, str(folder), "-o", str(tmp_path / "out")]) == 2

@@ -84,7 +84,10 @@ def _bar(canvas: NDArray[np.uint8], x: int, base: int, mean: float, spread: floa
 
 def _colours(count: int) -> list[tuple[int, int, int]]:
     """The last method is ours and has the last colour."""
-    return [*COLOURS[: count - 1], COLOURS[-1]]
+    rivals = list(COLOURS[:-1])
+    while len(rivals) < count - 1:  # the same again, each time half as strong
+        rivals += [((255 + r) // 2, (255 + g) // 2, (255 + b) // 2) for r, g, b in rivals[-len(COLOURS) + 1 :]]
+    return [*rivals[: count - 1], COLOURS[-1]]
 
 
 def _round_step(least: float) -> float:

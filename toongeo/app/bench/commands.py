@@ -14,11 +14,12 @@ def add_bench(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         ("table1", "landmark and photometric error, coarse and fine", _table1),
         ("table2", "the same with adjusted coefficients", _table2),
         ("table4", "seconds a stage", _table4),
+        ("caricature", "baselines of Wu et al. 2018 and the deformation space", _caricature),
     ):
         table = benches.add_parser(name, help=about)
         _add_folder(table)
         table.add_argument("-o", "--output", type=Path, metavar="OUT", help="folder for a CSV file and a chart")
-        if name != "table4":
+        if name in ("table1", "table2"):
             table.add_argument("--eos", type=Path, metavar="MODELS", help="compare eos-py too, with its model files")
         table.set_defaults(run=run)
     pairs = benches.add_parser("pairs", help="blind sheets of two faces, with a hidden key and an answer form")
@@ -69,6 +70,14 @@ def _table4(options: argparse.Namespace) -> None:
 
     _check_output(options.output)
     save_table(table4(options.folder), "table4", options.output)
+
+
+def _caricature(options: argparse.Namespace) -> None:
+    from toongeo.app.bench.caricature_table import caricature_table
+    from toongeo.app.bench.save_table import save_table
+
+    _check_output(options.output)
+    save_table(caricature_table(options.folder), "caricature", options.output)
 
 
 def _pairs(options: argparse.Namespace) -> None:

@@ -76,7 +76,7 @@ def _of_avatar(avatar: Avatar, landmarks: NDArray[np.float64], crop: FaceCrop) -
         face.vertices, model.faces[front], uv=model.uv, uv_faces=model.uv_faces[front], texture=avatar.texture
     )
     # The texture holds the light of the picture already.
-    drawn = _colour_error(surface, crop.camera(avatar.fit.camera), crop, "unlit", None)
+    drawn = _colour_error(surface, crop.camera(avatar.face.camera), crop, "unlit", None)
     return _landmark_errors(face, landmarks) | {PHOTOMETRIC: drawn}
 
 

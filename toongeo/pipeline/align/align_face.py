@@ -19,7 +19,7 @@ from toongeo.pipeline.align.straighten_teeth import straighten_teeth
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.pipeline.fit.face_fit import FaceFit
-from toongeo.protocols import Camera
+from toongeo.protocols import HeadCamera
 
 Laplacian = Literal["uniform", "cotangent"]
 RIM_WEIGHT = 0.01  # of the landmarks' weight: what lies between them is interpolated, not seen
@@ -32,7 +32,7 @@ class AlignedFace:
     Attributes
     ----------
     vertices : (n, 3) float64, mm, model frame
-    camera : Camera
+    camera : HeadCamera
         The camera of the coarse fit.
     landmark_vertices : (68,) int64
         Vertices that served as anchors.
@@ -44,7 +44,7 @@ class AlignedFace:
     """
 
     vertices: np.ndarray
-    camera: Camera
+    camera: HeadCamera
     landmark_vertices: np.ndarray
     model: MorphableModel
     fit: FaceFit
