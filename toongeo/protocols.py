@@ -5,7 +5,7 @@ Each Protocol is satisfied by shape, not by inheritance: any object or function 
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -186,4 +186,22 @@ class FittedFace(Protocol):
 
     def region(self, name: str) -> np.ndarray:
         """(n,) bool: which vertices belong to the region."""
+        ...
+
+
+class LandmarkMapper(Protocol):
+    """Takes the landmarks of a caricature to a normal face and back; a pair of networks, say, or `PartMapper`.
+
+    ``to_caricature(*to_normal(landmarks))`` gives the landmarks back.
+    """
+
+    def to_normal(self, landmarks: np.ndarray) -> tuple[np.ndarray, Any]:
+        """F+: landmarks (68, 2) px of the normal face for those of a drawing, and what ``to_caricature`` needs.
+
+        NaN rows are missing in the drawing; the normal face has all.
+        """
+        ...
+
+    def to_caricature(self, normal: np.ndarray, context: Any) -> np.ndarray:
+        """F-: landmarks (68, 2) px of the drawing when its normal face has these."""
         ...

@@ -1,0 +1,188 @@
+"""From the landmarks of a drawing to those of a normal face and back, without a network."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo._read_only import read_only
+from toongeo.caricature.sparse_expression import sparse_expression
+from toongeo.io.landmark_array import landmark_array
+from toongeo.model.default_model import default_model
+from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS, PARTS
+from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+
+__all__ = ["Exaggeration", "PartMapper"]
+
+Floats = NDArray[np.float64]
+
+# A face as exaggerated as the drawing asks for: a large identity is cheap, a misfit is not.
+_FREE = {"max_deviation": 12.0, "identity_weight": 0.05, "expression_weight": 4.0, "prior_weight": 1e-6}
+_SPREAD = 2.0  # standard deviation of the identities of caricatures
+_STIFFNESS = 0.3  # pulls a part's affine frame towards a similarity
+_CHIN = 4.0  # jaw points from the chin over which the jaw follows the mouth
+_RANGE = 3.0  # a part's motion grows or shrinks at most by this factor beside the whole face's
+
+
+@dataclass(frozen=True, eq=False)
+class Exaggeration:
+    """How a drawing differs from a normal face: what `PartMapper.to_caricature` applies.
+
+    Attributes
+    ----------
+    normal, drawn : (68, 2) float64, px
+        The normal face, and the drawing's landmarks.
+    frames : (68, 2, 2) float64
+        How a displacement of each landmark of the normal face shows in the drawing.
+    """
+
+    normal: Floats
+    drawn: Floats
+    frames: Floats
+
+    def __post_init__(self) -> None:
+        read_only(self, "normal", "drawn", "frames")
+
+
+class PartMapper:
+    """The default `LandmarkMapper`: a frame for each part of the face.
+
+    F+ gives the nearest plausible face of the model with the expression of the drawing. A fit in which identities
+    may be as large as the drawing asks for separates the exaggeration, which is identity, from the expression;
+    identity is then brought back among people. F- moves every landmark of the drawing as that of the normal face moved, in
+    the frame of its part: an eye drawn twice as tall closes by twice the way, and a wide mouth opens widely. The
+    chin goes with the mouth, the rest of the jaw with the whole face.
+
+    Parameters
+    ----------
+    model : MorphableModel, optional
+        `default_model` if None.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from toongeo.model import default_model
+    >>> from toongeo.render import ScaledOrthographicCamera
+    >>> model, mapper = default_model(), PartMapper()
+    >>> drawn = ScaledOrthographicCamera.look().project(model.mean[model.landmarks]) * [1.0, 1.2]
+    >>> normal, context = mapper.to_normal(drawn)
+    >>> bool(np.abs(mapper.to_caricature(normal, context) - drawn).max() < 1e-9)
+    True
+    """
+
+    def __init__(self, model: MorphableModel | None = None) -> None:
+        self.model = default_model() if model is None else model
+
+    def to_normal(self, landmarks: ArrayLike) -> tuple[Floats, Exaggeration]:
+        """F+: landmarks (68, 2) of the nearest plausible face, px of the same picture, and what F- needs.
+
+        Missing landmarks (NaN rows) are filled in, in both.
+
+        Raises
+        ------
+        ValueError
+            If the landmarks have another shape, hold infinities, or are too few for a fit.
+        """
+        drawn = landmark_array(landmarks)
+        face = sparse_expression(fit_3dmm(None, drawn, model=self.model, **_FREE), drawn, spread=_SPREAD)
+        normal = _landmarks(face, _plausible(face))
+        frames, scale = _part_frames(normal, drawn)
+        missing = ~np.isfinite(drawn).all(axis=1)
+        drawn[missing] = _whole(normal, drawn, scale)[missing]
+        return normal, Exaggeration(normal, drawn, frames)
+
+    def to_caricature(self, normal: ArrayLike, context: Exaggeration) -> Floats:
+        """F-: landmarks (68, 2), px, of the drawing when the normal face has these.
+
+        Raises
+        ------
+        ValueError
+            If the landmarks have another shape, are missing or hold infinities.
+        """
+        points = landmark_array(normal)
+        if not np.isfinite(points).all():
+            raise ValueError("normal: expected 68 landmarks, none of them missing, got NaN")
+        moved = context.drawn + np.einsum("kab,kb->ka", context.frames, points - context.normal)
+        return _rims_in_order(moved, context.drawn)
+
+
+def _plausible(face: FaceFit) -> Floats:
+    """Identity (k,) of a face, brought back to where people are: sqrt(k) deviations from the likeliest face."""
+    centre = 0.0 if face.model.prior is None else face.model.prior.mean
+    offset = face.identity - centre
+    return np.asarray(centre + offset * min(1.0, np.sqrt(len(offset)) / max(float(np.linalg.norm(offset)), 1e-12)))
+
+
+def _landmarks(face: FaceFit, identity: Floats) -> Floats:
+    """Where an annotator would put the landmarks (68, 2) of the face with another identity."""
+    points = face.model.vertices(identity, face.expression)[face.landmark_vertices]
+    return face.project(points if face.model.prior is None else points + face.model.prior.landmark_offsets)
+
+
+def _part_frames(normal: Floats, drawn: Floats) -> tuple[Floats, complex]:
+    """Frames (68, 2, 2) of the landmarks, and scale and rotation of the whole as a complex number."""
+    whole = _turn_and_scale(normal, drawn)
+    frames = np.tile(_matrix(whole), (68, 1, 1))
+    for part, points in PARTS.items():
+        if part != "jaw":
+            frames[points] = _frame(normal[points], drawn[points], whole)
+    jaw = PARTS["jaw"]
+    share = np.exp(-(((np.arange(len(jaw)) - len(jaw) // 2) / _CHIN) ** 2))[:, None, None]
+    frames[jaw] = share * frames[PARTS["mouth"][0]] + (1 - share) * frames[jaw]
+    return frames, whole
+
+
+def _frame(normal: Floats, drawn: Floats, whole: complex) -> Floats:
+    """Affine frame (2, 2) of one part, pulled towards the part's size and the whole face's rotation."""
+    seen = np.isfinite(drawn).all(axis=1)
+    if seen.sum() < 3:
+        return _matrix(whole)
+    a, b = normal[seen] - normal[seen].mean(0), drawn[seen] - drawn[seen].mean(0)
+    gram = a.T @ a
+    pull = _STIFFNESS * np.trace(gram) / 2
+    size = np.sqrt((b**2).sum() / max(float((a**2).sum()), 1e-12))
+    matrix = (b.T @ a + pull * _matrix(whole / abs(whole) * size)) @ np.linalg.inv(gram + pull * np.eye(2))
+    U, singular, Vt = np.linalg.svd(matrix)
+    limited = np.clip(singular, abs(whole) / _RANGE, abs(whole) * _RANGE)
+    return np.asarray((U * limited) @ Vt)
+
+
+def _turn_and_scale(normal: Floats, drawn: Floats) -> complex:
+    """Best similarity between landmarks, without its shift."""
+    seen = np.isfinite(drawn).all(axis=1)
+    a, b = ((points[seen] - points[seen].mean(0)) @ [1, 1j] for points in (normal, drawn))
+    return complex((a.conj() @ b) / (a.conj() @ a))
+
+
+def _matrix(z: complex) -> Floats:
+    return np.array([[z.real, -z.imag], [z.imag, z.real]])
+
+
+def _whole(normal: Floats, drawn: Floats, z: complex) -> Floats:
+    """The normal landmarks brought onto the drawing by one similarity."""
+    seen = np.isfinite(drawn).all(axis=1)
+    return (normal - normal[seen].mean(0)) @ _matrix(z).T + drawn[seen].mean(0)
+
+
+def _rims_in_order(moved: Floats, drawn: Floats) -> Floats:
+    """Lids and lips that would cross meet halfway; pairs that cross in the drawing may stay so."""
+    moved = moved.copy()
+    for upper, lower in _facing():
+        across = drawn[upper[-1]] - drawn[upper[0]]
+        down = np.array([-across[1], across[0]]) / max(float(np.linalg.norm(across)), 1e-12)
+        for u, v in zip(upper[1:-1], lower[1:-1], strict=True):
+            least = min(0.0, float((drawn[v] - drawn[u]) @ down))
+            lacking = max(0.0, least - float((moved[v] - moved[u]) @ down))
+            moved[u] -= lacking / 2 * down
+            moved[v] += lacking / 2 * down
+    return moved
+
+
+def _facing() -> list[tuple[tuple[int, ...], tuple[int, ...]]]:
+    """Upper and lower rims that touch when closed, from corner to corner."""
+    lids = [(LID_RIMS[f"lid_upper_{side}"], LID_RIMS[f"lid_lower_{side}"]) for side in ("left", "right")]
+    return [*lids, (LIP_RIMS["lip_upper_inner"], LIP_RIMS["lip_lower_inner"])]
