@@ -73,5 +73,12 @@ __getattr__, __dir__, __all__ = attach(
         "exaggerate": "caricature",
         "face_space": "caricature",
         "fit_caricature": "caricature",
+        "BlendshapeWeights": "caricature",
+        "PartMapper": "caricature",
+        "caricature_rig": "caricature",
+        "initial_blendshapes": "caricature",
+        "optimize_blendshapes": "caricature",
+        "weights_of_expression": "caricature",
+        "LandmarkMapper": "protocols",
     },
 )

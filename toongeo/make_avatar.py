@@ -3,11 +3,13 @@
 import dataclasses
 import time
 from collections.abc import Callable
+from typing import Literal
 
 import numpy as np
 
 from toongeo.avatar import Avatar
 from toongeo.avatar_report import AvatarReport, landmark_errors, shape_warnings
+from toongeo.caricature.caricature_rig import caricature_rig
 from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
@@ -39,6 +41,7 @@ def make_avatar(
     parser: FaceParser | None = None,
     snap: bool = False,
     photometric: bool = False,
+    rig: Literal["transfer", "caricature"] = "transfer",
     texture_size: int = 1024,
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
@@ -58,6 +61,9 @@ def make_avatar(
         detector, which shrinks and shifts the eyes of drawings; points that were set by hand are better left alone.
     photometric : bool
         Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
+    rig : {"transfer", "caricature"}
+        Where the expressions come from: the template's, by deformation transfer, or the drawing's own, reconstructed
+        from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
     texture_size : int
         Side of the texture atlas in texels.
     progress : callable, optional
@@ -71,10 +77,12 @@ def make_avatar(
     Raises
     ------
     ValueError
-        If the picture is not (H, W, 3) uint8, or the landmarks cannot belong to it.
+        If the picture is not (H, W, 3) uint8, or the landmarks cannot belong to it, or the rig is not known.
     """
     check_image(img)
     check_size(texture_size)
+    if rig not in ("transfer", "caricature"):
+        raise ValueError(f"rig: expected 'transfer' or 'caricature', got {rig!r}")
     clock = _Clock(progress)
 
     clock.start("fit")
@@ -92,13 +100,15 @@ def make_avatar(
     clock.start("align")
     face = align_face(fit, landmarks)
     clock.start("rig")
-    rig = close_lids(face, build_rig(face))
+    shapes = caricature_rig(face, landmarks) if rig == "caricature" else build_rig(face)
+    neutral = dataclasses.replace(face, vertices=shapes.neutral)
+    shapes = close_lids(neutral, shapes)
     clock.start("eyes")
-    eyes = fit_eyes(face, rig)
-    rig = line_sockets(face, clear_lids(face, rig, eyes), eyes)
-    face = dataclasses.replace(face, vertices=rig.neutral)
+    eyes = fit_eyes(neutral, shapes)
+    shapes = line_sockets(neutral, clear_lids(neutral, shapes, eyes), eyes)
+    face = dataclasses.replace(face, vertices=shapes.vertices(shapes.pose))  # as the picture shows it
     clock.start("texture")
-    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
+    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=shapes, size=texture_size, parse=parse))
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(
@@ -108,7 +118,7 @@ def make_avatar(
         seconds=clock.stop(),
         warnings=(*fit.report.warnings, *shape_warnings(face, eyes, quality)),
     )
-    return Avatar(fit=fit, parse=parse, face=face, rig=rig, eyes=eyes, texture=texture, report=report)
+    return Avatar(fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report)
 
 
 class _Clock:

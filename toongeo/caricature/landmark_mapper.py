@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import Delaunay
 
 from toongeo._read_only import read_only
 from toongeo.caricature.sparse_expression import sparse_expression
@@ -25,7 +26,10 @@ _FREE = {"max_deviation": 12.0, "identity_weight": 0.05, "expression_weight": 4.
 _SPREAD = 2.0  # standard deviation of the identities of caricatures
 _STIFFNESS = 0.3  # pulls a part's affine frame towards a similarity
 _CHIN = 4.0  # jaw points from the chin over which the jaw follows the mouth
-_RANGE = 3.0  # a part's motion grows or shrinks at most by this factor beside the whole face's
+_SHARE = 0.5  # power of a part's growth beside the whole face's that its motions take: room grows less than parts
+_ROOM = 0.4  # of the area between parts: what an expression leaves of it
+_SLIVER = 0.1  # height to length below which a triangle tells nothing about room
+_SHARES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,14 +42,17 @@ class Exaggeration:
         The normal face, and the drawing's landmarks.
     frames : (68, 2, 2) float64
         How a displacement of each landmark of the normal face shows in the drawing.
+    between : (t, 3) int64
+        Triangles of landmarks between the parts of the drawing: the room that expressions have.
     """
 
     normal: Floats
     drawn: Floats
     frames: Floats
+    between: NDArray[np.int64]
 
     def __post_init__(self) -> None:
-        read_only(self, "normal", "drawn", "frames")
+        read_only(self, "normal", "drawn", "frames", "between")
 
 
 class PartMapper:
@@ -93,7 +100,7 @@ class PartMapper:
         frames, scale = _part_frames(normal, drawn)
         missing = ~np.isfinite(drawn).all(axis=1)
         drawn[missing] = _whole(normal, drawn, scale)[missing]
-        return normal, Exaggeration(normal, drawn, frames)
+        return normal, Exaggeration(normal, drawn, frames, _between(drawn))
 
     def to_caricature(self, normal: ArrayLike, context: Exaggeration) -> Floats:
         """F-: landmarks (68, 2), px, of the drawing when the normal face has these.
@@ -106,8 +113,8 @@ class PartMapper:
         points = landmark_array(normal)
         if not np.isfinite(points).all():
             raise ValueError("normal: expected 68 landmarks, none of them missing, got NaN")
-        moved = context.drawn + np.einsum("kab,kb->ka", context.frames, points - context.normal)
-        return _rims_in_order(moved, context.drawn)
+        motion = np.einsum("kab,kb->ka", context.frames, points - context.normal)
+        return _rims_in_order(context.drawn + _fitting(motion, context) * motion, context.drawn)
 
 
 def _plausible(face: FaceFit) -> Floats:
@@ -147,8 +154,8 @@ def _frame(normal: Floats, drawn: Floats, whole: complex) -> Floats:
     size = np.sqrt((b**2).sum() / max(float((a**2).sum()), 1e-12))
     matrix = (b.T @ a + pull * _matrix(whole / abs(whole) * size)) @ np.linalg.inv(gram + pull * np.eye(2))
     U, singular, Vt = np.linalg.svd(matrix)
-    limited = np.clip(singular, abs(whole) / _RANGE, abs(whole) * _RANGE)
-    return np.asarray((U * limited) @ Vt)
+    growth = np.clip(singular / abs(whole), 0.1, 10.0) ** _SHARE
+    return np.asarray((U * (abs(whole) * growth)) @ Vt)
 
 
 def _turn_and_scale(normal: Floats, drawn: Floats) -> complex:
@@ -166,6 +173,34 @@ def _whole(normal: Floats, drawn: Floats, z: complex) -> Floats:
     """The normal landmarks brought onto the drawing by one similarity."""
     seen = np.isfinite(drawn).all(axis=1)
     return (normal - normal[seen].mean(0)) @ _matrix(z).T + drawn[seen].mean(0)
+
+
+def _between(drawn: Floats) -> NDArray[np.int64]:
+    """Triangles (t, 3) of landmarks, Delaunay, that span parts of the face and are no slivers."""
+    part = np.empty(68, np.int64)
+    for k, points in enumerate(PARTS.values()):
+        part[points] = k
+    triangles = Delaunay(drawn).simplices.astype(np.int64)
+    longest = np.linalg.norm(drawn[triangles] - drawn[np.roll(triangles, 1, axis=1)], axis=2).max(axis=1)
+    wide = np.abs(_areas(drawn, triangles)) > _SLIVER * longest**2
+    inner = ~np.isin(triangles, PARTS["jaw"]).any(axis=1)  # the outline gives way
+    return triangles[wide & inner & (np.ptp(part[triangles], axis=1) > 0)]
+
+
+def _areas(points: Floats, triangles: NDArray[np.int64]) -> Floats:
+    """Twice the signed areas (t,)."""
+    a, b, c = points[triangles].transpose(1, 2, 0)
+    return np.asarray((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+
+
+def _fitting(motion: Floats, context: Exaggeration) -> float:
+    """Share of a motion (68, 2) that leaves room between the parts: a mouth under a nose does not smile into it."""
+    room = _areas(context.drawn, context.between)
+    for share in _SHARES:
+        left = _areas(context.drawn + share * motion, context.between) / room
+        if (left > _ROOM).all():
+            return share
+    return _SHARES[-1]
 
 
 def _rims_in_order(moved: Floats, drawn: Floats) -> Floats:

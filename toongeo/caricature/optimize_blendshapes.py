@@ -10,9 +10,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo.caricature._shifted_systems import shifted_solutions
 from toongeo.geometry import cotangent_laplacian, validate_mesh
+from toongeo.geometry._factor import factor_spd, solve
 from toongeo.geometry.one_thread import one_thread
 
-__all__ = ["BlendshapeWeights", "displacement_masks", "expression_similarities", "optimize_blendshapes", "signed_graph"]
+__all__ = [
+    "BlendshapeWeights",
+    "displacement_masks",
+    "expression_similarities",
+    "optimize_blendshapes",
+    "signed_graph",
+    "squared_laplacian",
+]
 
 Floats = NDArray[np.float64]
 
@@ -31,24 +39,34 @@ class BlendshapeWeights:
     reach : float
         Length in units of the V given, beyond which E_str outweighs the Laplacian terms at equal weights: a
         Laplacian is per length^2, and so has to be multiplied by a length^2 to be compared with a displacement.
+    saturation : float in (0, 1]
+        Share of an expression's largest motion from which the mask is 1. With 1 it is that of Eq. 6, which also
+        halves what the normal face moves half as far as its farthest point: an opening jaw becomes a spike. With a
+        tenth only what is all but still there is held still.
+    softness : float
+        Length in units of the V given over which the masks fade; 0 leaves them as they are.
 
     Raises
     ------
     ValueError
-        If one is negative or not finite, or deformation or reach is zero.
+        If one is negative or not finite, deformation, reach or saturation is zero, or the latter above 1.
     """
 
     deformation: float = 1.0
     structure: float = 0.1
     smoothness: float = 0.05
-    reach: float = 30.0
+    reach: float = 60.0
+    saturation: float = 1.0
+    softness: float = 0.0
 
     def __post_init__(self) -> None:
         for option in fields(self):
             value = getattr(self, option.name)
-            least = "> 0" if option.name in ("deformation", "reach") else ">= 0"
+            least = "> 0" if option.name in ("deformation", "reach", "saturation") else ">= 0"
             if not np.isfinite(value) or value < 0 or (value == 0 and least == "> 0"):
                 raise ValueError(f"{option.name}: expected a finite number {least}, got {value}")
+        if self.saturation > 1:
+            raise ValueError(f"saturation: expected a number in (0, 1], got {self.saturation}")
 
 
 def optimize_blendshapes(
@@ -113,11 +131,12 @@ def optimize_blendshapes(
     """
     weights = BlendshapeWeights() if weights is None else weights
     D, D_normal, V, F = _checked(D, D_normal, V, F)
-    masks = displacement_masks(D_normal)
+    masks = displacement_masks(D_normal, weights.saturation)
     moving, acting = masks.max(axis=0) > 0, masks.max(axis=1) > 0
     if not moving.any():
         raise ValueError("D_normal: expected an expression that moves a vertex, got none")
-    K = _squared_laplacian(V, F, weights.reach)[moving]
+    masks = _faded(masks, V, F, weights.softness) if weights.softness else masks
+    K = squared_laplacian(V, F, weights.reach)[moving]
     wanted = masks[acting][:, :, None] * D[acting]
     pull = weights.deformation * (K @ wanted.transpose(1, 0, 2).reshape(len(V), -1))
     similarity = expression_similarities(D_normal[acting])
@@ -132,13 +151,13 @@ def optimize_blendshapes(
     return best
 
 
-def displacement_masks(D_normal: Floats) -> Floats:
+def displacement_masks(D_normal: Floats, saturation: float = 1.0) -> Floats:
     """M (k, n) in [0, 1] of Eq. 6: how far each vertex moves beside the one that moves farthest; zero if none does."""
     sizes = np.linalg.norm(D_normal, axis=2)
     peaks = sizes.max(axis=1, keepdims=True)
     moves = peaks > _STILL * max(float(peaks.max()), 1e-300)
     masks = np.divide(sizes, peaks, out=np.zeros_like(sizes), where=moves)
-    return np.where(masks > _STILL, masks, 0.0)
+    return np.where(masks > _STILL, np.minimum(masks / saturation, 1.0), 0.0)
 
 
 def expression_similarities(D: Floats) -> Floats:
@@ -157,11 +176,22 @@ def signed_graph(similarity: Floats) -> Floats:
     return np.asarray(2.0 / max(len(c) - 1, 1) * (np.diag(np.abs(c).sum(axis=1)) - c))
 
 
-def _squared_laplacian(V: Floats, F: NDArray[np.int64], reach: float) -> sp.csr_matrix:
-    corners = V[F]
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
-    L = cotangent_laplacian(V, F, clamp=_CLAMP) * (reach**2 * len(V) / area)
+def squared_laplacian(V: Floats, F: NDArray[np.int64], reach: float) -> sp.csr_matrix:
+    """``Delta^T Delta`` (n, n), with Delta scaled by ``reach^2 / mean vertex area``."""
+    L = cotangent_laplacian(V, F, clamp=_CLAMP) * (reach**2 / _mean_vertex_area(V, F))
     return sp.csr_matrix(L @ L)
+
+
+def _faded(masks: Floats, V: Floats, F: NDArray[np.int64], length: float) -> Floats:
+    """Masks (k, n) after a step of implicit diffusion over a length, on a mesh of even density."""
+    L = cotangent_laplacian(V, F, clamp=_CLAMP) * (length**2 / _mean_vertex_area(V, F))
+    return solve(factor_spd(sp.eye_array(len(V)) + L), np.ascontiguousarray(masks.T)).T
+
+
+def _mean_vertex_area(V: Floats, F: NDArray[np.int64]) -> float:
+    corners = V[F]
+    doubled = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    return float(doubled.sum() / 2 / len(V))
 
 
 def _checked(

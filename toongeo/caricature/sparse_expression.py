@@ -12,19 +12,25 @@ from toongeo.geometry.one_thread import one_thread
 from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import PARTS
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.model.opposites import opposite_expressions
 from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.without_opposites import without_opposites
 
 __all__ = ["sparse_expression"]
 
 Floats = NDArray[np.float64]
 
-_NOISE_MM = 0.2  # standard deviation of a landmark
-_JAW_MM = 1.4  # of a jaw point, which slides along the outline
+# How loosely a drawing keeps to the model, as multiples of the three rows below; the likeliest is taken.
+_LOOSENESS = 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0
+_NOISE_MM, _JAW_MM = 0.2, 1.4  # s.d. of a landmark, and of a jaw point, which slides along the outline
+_PART_SHIFT_MM, _PART_GROWTH, _PART_TURN = 1.0, 0.03, 0.02  # s.d. of place, size and tilt of a part
+
 _RARITY = 8.0  # cost of a named expression at weight 1: few are seen at a time
 _FEW = 0.5  # precision of a named expression beside that; keeps the system well-conditioned
 _UNNAMED = 0.3  # standard deviation of the unnamed expressions: they are corrections
 _TURN, _SHIFT_MM, _SWELL = 0.1, 30.0, 0.1  # how far the pose may be off, s.d.
 _BOUND = 3.0  # of unnamed expressions
+_HELD = 1e-12  # a bound that holds a weight at zero: the solver wants bounds that differ
 
 
 def sparse_expression(fit: FaceFit, landmarks: ArrayLike, *, spread: float = 1.0) -> FaceFit:
@@ -60,18 +66,48 @@ def sparse_expression(fit: FaceFit, landmarks: ArrayLike, *, spread: float = 1.0
     with one_thread():
         A, B, left = _equations(fit, pixels)
         seen = np.isfinite(left)
-        identities = spread * A[:, : len(fit.identity)]
-        nuisance = np.hstack([identities, A[:, len(fit.identity) :]])[seen]
-        covariance = nuisance @ nuisance.T + np.diag(_variances()[seen])
-        whiten = np.linalg.inv(np.linalg.cholesky(covariance))
-        expression = _sparse(whiten @ B[seen], whiten @ left[seen], fit.model)
-        unexplained = whiten.T @ (whiten @ (left[seen] - B[seen] @ expression))
-        identity = _likeliest(fit.model) + spread * identities[seen].T @ unexplained
+        A[:, : len(fit.identity)] *= spread
+        A, B, left, parts = A[seen], B[seen], left[seen], _part_motions(fit)[seen]
+        found = [_explained(A, B, left, k * parts, k**2 * _variances()[seen], fit.model) for k in _LOOSENESS]
+        _, expression, unexplained = min(found, key=lambda each: each[0])
+        identity = _likeliest(fit.model) + spread * A[:, : len(fit.identity)].T @ unexplained
     return replace(fit, identity=identity, expression=expression)
 
 
 def _likeliest(model: MorphableModel) -> Floats:
     return np.zeros(len(model.identity)) if model.prior is None else np.asarray(model.prior.mean)
+
+
+def _explained(
+    A: Floats, B: Floats, left: Floats, parts: Floats, variances: Floats, model: MorphableModel
+) -> tuple[float, Floats, Floats]:
+    """Minus the log of the evidence, the expression, and what it leaves, divided by its covariance."""
+    lower = np.linalg.cholesky(A @ A.T + parts @ parts.T + np.diag(variances))
+    whiten = np.linalg.inv(lower)
+    expression, cost = _sparse(whiten @ B, whiten @ left, model)
+    evidence = cost / 2 + np.log(lower.diagonal()).sum()
+    return float(evidence), expression, whiten.T @ (whiten @ (left - B @ expression))
+
+
+def _part_motions(fit: FaceFit) -> Floats:
+    """How place, size and tilt of the parts, of one standard deviation each, move the landmarks: (136, c), mm."""
+    camera = fit.camera
+    points = camera.project(fit.vertices[fit.landmark_vertices]) / np.linalg.norm(camera.jacobian(np.zeros((1, 3)))[0, 0])
+    columns = []
+    for part in PARTS.values():
+        x, y = (points[part] - points[part].mean(0)).T
+        one, none = np.ones(len(part)), np.zeros(len(part))
+        for motion, deviation in (
+            ((one, none), _PART_SHIFT_MM),
+            ((none, one), _PART_SHIFT_MM),
+            ((x, none), _PART_GROWTH),
+            ((none, y), _PART_GROWTH),
+            ((-y, x), _PART_TURN),
+        ):
+            column = np.zeros((68, 2))
+            column[part] = deviation * np.stack(motion, axis=1)
+            columns.append(column.ravel())
+    return np.stack(columns, axis=1)
 
 
 def _variances() -> Floats:
@@ -100,8 +136,8 @@ def _equations(fit: FaceFit, pixels: Floats) -> tuple[Floats, Floats, Floats]:
     return np.hstack([identities, pose]), expressions, ((pixels - camera.project(rest)) / scale).ravel()
 
 
-def _sparse(M: Floats, y: Floats, model: MorphableModel) -> Floats:
-    """Expression (e,) of least ``|M e - y|^2 + priors`` within its bounds."""
+def _sparse(M: Floats, y: Floats, model: MorphableModel) -> tuple[Floats, float]:
+    """Expression (e,) of least ``|M e - y|^2 + priors`` within its bounds, and this value."""
     count, named = M.shape[1], np.arange(M.shape[1]) < model.n_named
     H = M.T @ M + np.diag(np.where(named, _FEW**2, _UNNAMED**-2))
     g = M.T @ y - np.where(named, _RARITY, 0.0)
@@ -109,7 +145,11 @@ def _sparse(M: Floats, y: Floats, model: MorphableModel) -> Floats:
     if "mouthClose" in model.expression_names:
         free[model.expression_index("mouthClose")] = False  # it corrects an open jaw; 68 points do not tell it
     upper = np.linalg.cholesky(H[np.ix_(free, free)]).T
-    bounds = np.where(named, 0.0, -_BOUND)[free], np.where(named, 1.0, _BOUND)[free]
-    found = np.zeros(count)
-    found[free] = lsq_linear(upper, np.linalg.solve(upper.T, g[free]), bounds, method="bvls", max_iter=10 * count).x
-    return np.clip(found, np.where(named, 0.0, -_BOUND), np.where(named, 1.0, _BOUND))
+    lowest, highest = np.where(named, 0.0, -_BOUND), np.where(named, 1.0, _BOUND)
+    target, e = np.linalg.solve(upper.T, g[free]), np.zeros(count)
+    for _ in range(2):  # with opposites, then with the lesser of each two held at zero
+        within = lowest[free], np.maximum(highest, _HELD)[free]
+        e[free] = lsq_linear(upper, target, within, method="bvls", max_iter=10 * count).x
+        highest = without_opposites(highest, e, opposite_expressions(model))
+    e = np.clip(e, lowest, highest)
+    return e, float(y @ y + e @ (H @ e) - 2 * e @ g)
