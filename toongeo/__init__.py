@@ -11,7 +11,8 @@ The stages, in the order in which :func:`make_avatar` calls them:
 7. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
 8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .obj, .ply).
 
-For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space.
+For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space, and
+:func:`caricature_rig` that of 5 in the manner of the drawing.
 
 Every name is imported when it is first used, so ``import toongeo`` itself costs almost nothing.
 """

@@ -1,4 +1,4 @@
-"""Exaggerated faces: a deformation space that extrapolates (Wu et al. 2018), and their expressions (Chen et al. 2020)."""
+"""Exaggerated faces: a deformation space that extrapolates (Wu et al. 2018); expressions of them (Chen et al. 2020)."""
 
 from toongeo.caricature.bilinear_model import BilinearModel, bilinear_fit
 from toongeo.caricature.caricature_fit import CaricatureFit

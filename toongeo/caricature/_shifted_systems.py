@@ -14,7 +14,7 @@ Floats = NDArray[np.float64]
 
 _TOLERANCE = 1e-10
 _ROUNDS = 60
-_FLOOR = 1e-9  # of the mean diagonal entry: added to all, so that what nothing holds stays at rest
+_FLOOR = 1e-11  # of the mean diagonal entry: added to all, so that what nothing holds stays at rest
 
 
 def shifted_solutions(A: sp.spmatrix, shifts: Floats, B: Floats) -> Floats:

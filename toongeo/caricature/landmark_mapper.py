@@ -16,18 +16,19 @@ from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS, PARTS
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.fit.fit_options import FitOptions
 
 __all__ = ["Exaggeration", "PartMapper"]
 
 Floats = NDArray[np.float64]
 
 # A face as exaggerated as the drawing asks for: a large identity is cheap, a misfit is not.
-_FREE = {"max_deviation": 12.0, "identity_weight": 0.05, "expression_weight": 4.0, "prior_weight": 1e-6}
+_FREE = FitOptions(max_deviation=12.0, identity_weight=0.05, expression_weight=4.0, prior_weight=1e-6)
 _SPREAD = 2.0  # standard deviation of the identities of caricatures
 _STIFFNESS = 0.3  # pulls a part's affine frame towards a similarity
 _CHIN = 4.0  # jaw points from the chin over which the jaw follows the mouth
 _SHARE = 0.5  # power of a part's growth beside the whole face's that its motions take: room grows less than parts
-_ROOM = 0.4  # of the area between parts: what an expression leaves of it
+_ROOM = 0.5  # of the share of the area between parts that an expression leaves in the normal face
 _SLIVER = 0.1  # height to length below which a triangle tells nothing about room
 _SHARES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5
 
@@ -59,10 +60,11 @@ class PartMapper:
     """The default `LandmarkMapper`: a frame for each part of the face.
 
     F+ gives the nearest plausible face of the model with the expression of the drawing. A fit in which identities
-    may be as large as the drawing asks for separates the exaggeration, which is identity, from the expression;
-    identity is then brought back among people. F- moves every landmark of the drawing as that of the normal face moved, in
-    the frame of its part: an eye drawn twice as tall closes by twice the way, and a wide mouth opens widely. The
-    chin goes with the mouth, the rest of the jaw with the whole face.
+    may be as large as the drawing asks for separates the exaggeration, which is identity, from the expression; then
+    the identity is brought back among people. F- moves every landmark of the drawing as that of the normal face
+    moved, in the frame of its part: tall eyes close by more, and a wide mouth opens widely. The chin goes with the
+    mouth, the rest of the jaw with the whole face. Lids and lips meet and do not cross, and a mouth right under a
+    nose does not smile into it.
 
     Parameters
     ----------
@@ -95,7 +97,7 @@ class PartMapper:
             If the landmarks have another shape, hold infinities, or are too few for a fit.
         """
         drawn = landmark_array(landmarks)
-        face = sparse_expression(fit_3dmm(None, drawn, model=self.model, **_FREE), drawn, spread=_SPREAD)
+        face = sparse_expression(fit_3dmm(None, drawn, model=self.model, options=_FREE), drawn, spread=_SPREAD)
         normal = _landmarks(face, _plausible(face))
         frames, scale = _part_frames(normal, drawn)
         missing = ~np.isfinite(drawn).all(axis=1)
@@ -114,7 +116,7 @@ class PartMapper:
         if not np.isfinite(points).all():
             raise ValueError("normal: expected 68 landmarks, none of them missing, got NaN")
         motion = np.einsum("kab,kb->ka", context.frames, points - context.normal)
-        return _rims_in_order(context.drawn + _fitting(motion, context) * motion, context.drawn)
+        return _rims_in_order(context.drawn + _fitting(motion, points, context) * motion, context.drawn)
 
 
 def _plausible(face: FaceFit) -> Floats:
@@ -193,12 +195,15 @@ def _areas(points: Floats, triangles: NDArray[np.int64]) -> Floats:
     return np.asarray((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
 
 
-def _fitting(motion: Floats, context: Exaggeration) -> float:
-    """Share of a motion (68, 2) that leaves room between the parts: a mouth under a nose does not smile into it."""
+def _fitting(motion: Floats, normal: Floats, context: Exaggeration) -> float:
+    """Share of a motion (68, 2) that leaves room between the parts: a mouth under a nose does not smile into it.
+
+    Of the room that the normal face (68, 2) keeps, the drawing keeps a good part too.
+    """
+    kept = np.minimum(_areas(normal, context.between) / _areas(context.normal, context.between), 1.0)
     room = _areas(context.drawn, context.between)
     for share in _SHARES:
-        left = _areas(context.drawn + share * motion, context.between) / room
-        if (left > _ROOM).all():
+        if (_areas(context.drawn + share * motion, context.between) / room > _ROOM * kept).all():
             return share
     return _SHARES[-1]
 

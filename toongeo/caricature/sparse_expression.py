@@ -12,9 +12,7 @@ from toongeo.geometry.one_thread import one_thread
 from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import PARTS
 from toongeo.model.morphable_model import MorphableModel
-from toongeo.model.opposites import opposite_expressions
 from toongeo.pipeline.fit.face_fit import FaceFit
-from toongeo.pipeline.fit.without_opposites import without_opposites
 
 __all__ = ["sparse_expression"]
 
@@ -30,7 +28,6 @@ _FEW = 0.5  # precision of a named expression beside that; keeps the system well
 _UNNAMED = 0.3  # standard deviation of the unnamed expressions: they are corrections
 _TURN, _SHIFT_MM, _SWELL = 0.1, 30.0, 0.1  # how far the pose may be off, s.d.
 _BOUND = 3.0  # of unnamed expressions
-_HELD = 1e-12  # a bound that holds a weight at zero: the solver wants bounds that differ
 
 
 def sparse_expression(fit: FaceFit, landmarks: ArrayLike, *, spread: float = 1.0) -> FaceFit:
@@ -92,7 +89,9 @@ def _explained(
 def _part_motions(fit: FaceFit) -> Floats:
     """How place, size and tilt of the parts, of one standard deviation each, move the landmarks: (136, c), mm."""
     camera = fit.camera
-    points = camera.project(fit.vertices[fit.landmark_vertices]) / np.linalg.norm(camera.jacobian(np.zeros((1, 3)))[0, 0])
+    points = camera.project(fit.vertices[fit.landmark_vertices]) / np.linalg.norm(
+        camera.jacobian(np.zeros((1, 3)))[0, 0]
+    )
     columns = []
     for part in PARTS.values():
         x, y = (points[part] - points[part].mean(0)).T
@@ -146,10 +145,7 @@ def _sparse(M: Floats, y: Floats, model: MorphableModel) -> tuple[Floats, float]
         free[model.expression_index("mouthClose")] = False  # it corrects an open jaw; 68 points do not tell it
     upper = np.linalg.cholesky(H[np.ix_(free, free)]).T
     lowest, highest = np.where(named, 0.0, -_BOUND), np.where(named, 1.0, _BOUND)
-    target, e = np.linalg.solve(upper.T, g[free]), np.zeros(count)
-    for _ in range(2):  # with opposites, then with the lesser of each two held at zero
-        within = lowest[free], np.maximum(highest, _HELD)[free]
-        e[free] = lsq_linear(upper, target, within, method="bvls", max_iter=10 * count).x
-        highest = without_opposites(highest, e, opposite_expressions(model))
+    e, target = np.zeros(count), np.linalg.solve(upper.T, g[free])
+    e[free] = lsq_linear(upper, target, (lowest[free], highest[free]), method="bvls", max_iter=10 * count).x
     e = np.clip(e, lowest, highest)
     return e, float(y @ y + e @ (H @ e) - 2 * e @ g)
