@@ -11,6 +11,7 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 
 import argparse
 import time
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,8 @@ from toongeo.caricature.sparse_expression import sparse_expression
 from toongeo.geometry._factor import factor_spd, solve
 from toongeo.io import write_image
 from toongeo.pipeline import build_rig
+from toongeo.pipeline.fit.contour import landmarks_seen
+from toongeo.pipeline.fit.landmark_basis import landmark_basis
 from toongeo.render import Surface
 
 model, space = default_model(), face_space()
@@ -74,12 +77,18 @@ def exaggerated(identity: np.ndarray, amount: float):
     left = face - space.space.vertices(own)
 
     def vertices(expression: np.ndarray) -> np.ndarray:
-        shape = model.vertices(identity, expression)[AT]
-        w = space.space.fit(shape, start=own, ridge=1e-2, iterations=3).w
+        w = own + expression_weights(expression.tobytes())
         moved = space.space.vertices(w + amount * own) - space.space.vertices(w)
-        return shape + moved + amount * (left - left.mean(0))
+        return model.vertices(identity, expression)[AT] + moved + amount * (left - left.mean(0))
 
     return vertices
+
+
+@cache
+def expression_weights(expression: bytes) -> np.ndarray:
+    """Weights in the space of an expression of the mean face."""
+    shape = model.vertices(None, np.frombuffer(expression))[AT]
+    return space.space.fit(shape, ridge=1e-3, iterations=5).w
 
 
 def edited(fit, expression: np.ndarray) -> np.ndarray:
@@ -98,17 +107,20 @@ def landmark_errors(seed: int, amount: float) -> dict[str, float]:
     identity = model.prior.mean + rng.standard_normal(len(model.identity))
     camera = ScaledOrthographicCamera.look(rng.uniform(-20, 20), rng.uniform(-5, 5), size=512)
     vertices, mapper = exaggerated(identity, amount), PartMapper(model)
-    seen = [camera.project(vertices(e)[space.rows(model.landmarks)]) for e in TARGETS]
+    basis, whole = landmark_basis(model), model.mean.copy()
+    whole[AT] = vertices(SOURCES["neutral"])
+    at = landmarks_seen(basis, whole[basis.vertices], camera.rotation)  # the jaw where an annotator sees it
+    seen = [camera.project(vertices(e)[space.rows(at)]) for e in TARGETS]
     errors: dict[str, list[float]] = {}
     for source in SOURCES.values():
-        drawn = camera.project(vertices(source)[space.rows(model.landmarks)])
+        drawn = camera.project(vertices(source)[space.rows(at)])
         plain = fit_3dmm(None, drawn)
         scale = size(drawn) / size(plain.project(plain.vertices[plain.landmark_vertices]))
         points, context = mapper.to_normal(drawn)
         normal = sparse_expression(fit_3dmm(None, points, prior_weight=1e-6), points)
-        subject = camera.project(model.vertices(identity, source)[model.landmarks])
+        subject = camera.project(model.vertices(identity, source)[at])
         for expression, truth in zip(TARGETS, seen, strict=True):
-            own = camera.project(model.vertices(identity, expression)[model.landmarks]) - subject
+            own = camera.project(model.vertices(identity, expression)[at]) - subject
             for name, found in {
                 "not moved": drawn,
                 "copied from the fitted face": drawn + scale * edited(plain, expression),

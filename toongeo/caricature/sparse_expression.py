@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 # How loosely a drawing keeps to the model, as multiples of the three rows below; the likeliest is taken.
 _LOOSENESS = 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0
-_NOISE_MM, _JAW_MM = 0.2, 1.4  # s.d. of a landmark, and of a jaw point, which slides along the outline
+_NOISE_MM, _JAW_MM = 0.2, 3.0  # s.d. of a landmark, and of a jaw point, which slides along the outline
 _PART_SHIFT_MM, _PART_GROWTH, _PART_TURN = 1.0, 0.03, 0.02  # s.d. of place, size and tilt of a part
 
 _RARITY = 8.0  # cost of a named expression at weight 1: few are seen at a time
@@ -65,7 +65,7 @@ def sparse_expression(fit: FaceFit, landmarks: ArrayLike, *, spread: float = 1.0
         seen = np.isfinite(left)
         A[:, : len(fit.identity)] *= spread
         A, B, left, parts = A[seen], B[seen], left[seen], _part_motions(fit)[seen]
-        found = [_explained(A, B, left, k * parts, k**2 * _variances()[seen], fit.model) for k in _LOOSENESS]
+        found = [_explained(A, B, left, k * parts, _variances(k)[seen], fit.model) for k in _LOOSENESS]
         _, expression, unexplained = min(found, key=lambda each: each[0])
         identity = _likeliest(fit.model) + spread * A[:, : len(fit.identity)].T @ unexplained
     return replace(fit, identity=identity, expression=expression)
@@ -109,10 +109,10 @@ def _part_motions(fit: FaceFit) -> Floats:
     return np.stack(columns, axis=1)
 
 
-def _variances() -> Floats:
-    """Of the coordinates (136,) of the landmarks, mm^2."""
-    deviation = np.full((68, 2), _NOISE_MM)
-    deviation[PARTS["jaw"]] = _JAW_MM
+def _variances(looseness: float) -> Floats:
+    """Of the coordinates (136,) of the landmarks, mm^2; the jaw points' own is never less than in people."""
+    deviation = np.full((68, 2), looseness * _NOISE_MM)
+    deviation[PARTS["jaw"]] = max(looseness, 1.0) * _JAW_MM
     return deviation.ravel() ** 2
 
 
