@@ -26,8 +26,8 @@ Floats = NDArray[np.float64]
 
 # How far a drawing's lids are apart is a trait, not an expression: they are closed by contact, from where they are.
 _TRAITS = ("eyeBlink", "eyeWide")
-_STILL = 0.02  # of the largest motion
-_WEIGHTS = BlendshapeWeights(saturation=0.1, softness=6.0)
+_STILL = 0.02  # of the largest motion: what moves no more in the normal face is still
+_WEIGHTS = BlendshapeWeights(saturation=0.1, softness=6.0)  # mm
 
 
 def caricature_rig(
@@ -74,8 +74,9 @@ def caricature_rig(
     D = initial.vertices[1:] - initial.vertices[0]
     weights = _WEIGHTS if weights is None else weights
     best = optimize_blendshapes(D, D_normal, face.vertices[space.vertices], space.space.faces, weights)
-    still = displacement_masks(D_normal) < _STILL  # of each expression; restoring mixes in a little of others
-    best = np.where(still[:, :, None], best, restore_similarities(best, D_normal))
+    # Restoring mixes in a little of other expressions: not where this one is still.
+    share = np.clip(displacement_masks(D_normal) / _STILL - 1.0, 0.0, 1.0)[:, :, None]
+    best += share * (restore_similarities(best, D_normal) - best)
     deltas = _with_inner_parts(space, face, best)
     pose = weights_of_expression(initial.normal.expression, model)
     pose[[name.startswith(_TRAITS) for name in model.expression_names[: model.n_named]]] = 0.0
