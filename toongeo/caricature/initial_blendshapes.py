@@ -90,12 +90,9 @@ def initial_blendshapes(
     normal = sparse_expression(fit, points)
     targets = np.stack([_checked(mapper.to_caricature(p, context), "to_caricature") for p in _edited(normal, points)])
     weights = _expression_weights(source.space)
-    start = source.w - np.tensordot(normal.expression[: len(weights)], weights, 1)
-    shapes = np.empty((len(targets), len(source.space.vertices), 3))
-    for i, target in enumerate(targets):
-        w = start if i == 0 else start + weights[i - 1]
-        shapes[i] = _reconstructed(replace(source, w=w), target)
-    return InitialBlendshapes(shapes, targets, source, normal)
+    rest = source.w - np.tensordot(normal.expression[: len(weights)], weights, 1)
+    shapes = [_reconstructed(source, w, p) for w, p in zip([rest, *(rest + weights)], targets, strict=True)]
+    return InitialBlendshapes(np.stack(shapes), targets, source, normal)
 
 
 def _edited(normal: FaceFit, points: Floats) -> Floats:
@@ -110,12 +107,18 @@ def _edited(normal: FaceFit, points: Floats) -> Floats:
     return points + np.stack([normal.project(face) for face in faces]) - normal.project(normal.vertices[at])
 
 
-def _reconstructed(start: CaricatureFit, target: Floats) -> Floats:
-    """Vertices (v, 3) of the space fitted to landmarks; mouth and sockets, which follow later, are left alone."""
-    fit = fit_caricature(
-        None, target, space=start.space, iterations=1, start=start, options=CaricatureOptions(tuck=False)
-    )
-    return fit.vertices[start.space.vertices]
+def _reconstructed(source: CaricatureFit, w: Floats, target: Floats) -> Floats:
+    """Vertices (v, 3) of the space fitted to landmarks, beginning at the source with other weights.
+
+    Mouth and sockets, which follow later, are left alone.
+    """
+    space, vertices = source.space, source.vertices.copy()
+    vertices[space.vertices] += space.space.vertices(w) - space.space.vertices(source.w)
+    start = replace(source, w=w, vertices=vertices)
+    options = CaricatureOptions(tuck=False)
+    return fit_caricature(None, target, space=space, iterations=1, start=start, options=options).vertices[
+        space.vertices
+    ]
 
 
 @lru_cache(maxsize=2)
