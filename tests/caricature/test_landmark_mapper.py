@@ -69,16 +69,16 @@ def test_parts_that_the_normal_face_does_not_move_stay(mapper, cartoon):
 
 def test_a_mouth_drawn_wider_opens_more_widely(mapper, model, smiling):
     plain = landmarks(model, smiling[0], np.zeros(len(model.expression)))
-    wide = plain.copy()
-    centre = plain[PARTS["mouth"]].mean(0)
-    wide[PARTS["mouth"]] = centre + 1.6 * (plain[PARTS["mouth"]] - centre)
-    gaps = []
-    for drawn in (plain, wide):
+    centre, gaps = plain[PARTS["mouth"]].mean(0), []
+    for growth in (1.0, 2.0, 3.0):
+        drawn = plain.copy()
+        drawn[PARTS["mouth"]] = centre + growth * (plain[PARTS["mouth"]] - centre)
         normal, context = mapper.to_normal(drawn)
         moved = normal.copy()
         moved[PARTS["mouth"][[17, 18, 19, 7, 8, 9]]] += [0.0, 10.0]  # the lower lip
         gaps.append(mapper.to_caricature(moved, context)[66, 1] - drawn[66, 1])
-    assert 1.1 < gaps[1] / gaps[0] < 1.6
+    assert gaps[0] == pytest.approx(10, rel=0.02)
+    assert 1.05 * gaps[0] < gaps[1] < gaps[2] < 3 * gaps[0] and gaps[2] > 1.2 * gaps[0]
 
 
 def test_lids_meet_and_do_not_cross(mapper, cartoon):
