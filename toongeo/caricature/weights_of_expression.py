@@ -49,7 +49,7 @@ def weights_of_expression(
     >>> model = default_model()
     >>> expression = np.zeros(len(model.expression))
     >>> expression[model.expression_index("jawOpen")] = 0.6
-    >>> round(weights_of_expression(expression, model)[model.expression_index("jawOpen")], 6)
+    >>> round(float(weights_of_expression(expression, model)[model.expression_index("jawOpen")]), 6)
     0.6
     """
     wanted = np.asarray(expression, np.float64)
