@@ -15,7 +15,8 @@ The stages, in the order in which :func:`make_avatar` calls them:
 9. :class:`LandmarkDriver`, :class:`ArkitDriver` - weights of another face's performance, for any avatar.
 
 A head that was modelled elsewhere gets the expressions from :func:`rig_mesh` (by :func:`nonrigid_register`).
-For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space.
+For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space, and
+:func:`caricature_rig` that of 5 in the manner of the drawing.
 
 Every name is imported when it is first used, so ``import toongeo`` itself costs almost nothing.
 """
@@ -92,5 +93,12 @@ __getattr__, __dir__, __all__ = attach(
         "exaggerate": "caricature",
         "face_space": "caricature",
         "fit_caricature": "caricature",
+        "BlendshapeWeights": "caricature",
+        "PartMapper": "caricature",
+        "caricature_rig": "caricature",
+        "initial_blendshapes": "caricature",
+        "optimize_blendshapes": "caricature",
+        "weights_of_expression": "caricature",
+        "LandmarkMapper": "protocols",
     },
 )

@@ -1,14 +1,20 @@
 """The public names, for type checkers; ``__init__.py`` imports each when it is first used."""
 
 from toongeo.avatar import Avatar as Avatar
+from toongeo.caricature import BlendshapeWeights as BlendshapeWeights
 from toongeo.caricature import CaricatureFit as CaricatureFit
 from toongeo.caricature import CaricatureOptions as CaricatureOptions
 from toongeo.caricature import DeformationSpace as DeformationSpace
 from toongeo.caricature import FaceSpace as FaceSpace
+from toongeo.caricature import PartMapper as PartMapper
+from toongeo.caricature import caricature_rig as caricature_rig
 from toongeo.caricature import caricature_surface as caricature_surface
 from toongeo.caricature import exaggerate as exaggerate
 from toongeo.caricature import face_space as face_space
 from toongeo.caricature import fit_caricature as fit_caricature
+from toongeo.caricature import initial_blendshapes as initial_blendshapes
+from toongeo.caricature import optimize_blendshapes as optimize_blendshapes
+from toongeo.caricature import weights_of_expression as weights_of_expression
 from toongeo.driving import ArkitDriver as ArkitDriver
 from toongeo.driving import LandmarkDriver as LandmarkDriver
 from toongeo.driving import Take as Take
@@ -62,6 +68,7 @@ from toongeo.protocols import Coefficients as Coefficients
 from toongeo.protocols import ExpressionDriver as ExpressionDriver
 from toongeo.protocols import FaceLabel as FaceLabel
 from toongeo.protocols import FaceParse as FaceParse
+from toongeo.protocols import LandmarkMapper as LandmarkMapper
 from toongeo.render import PerspectiveCamera as PerspectiveCamera
 from toongeo.render import ScaledOrthographicCamera as ScaledOrthographicCamera
 from toongeo.render import render_mesh as render_mesh

@@ -10,12 +10,14 @@ import numpy as np
 from toongeo.avatar import Avatar
 from toongeo.avatar_report import AvatarReport, landmark_errors, shape_warnings
 from toongeo.caricature.align_caricature import align_caricature
+from toongeo.caricature.caricature_rig import caricature_rig
 from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
     AlignedFace,
     FaceFit,
+    Rig,
     aim_eyes,
     align_face,
     bake_eyes,
@@ -52,6 +54,7 @@ def make_avatar(
     neutral: bool = True,
     gain: float | Literal["auto"] = 1.0,
     method: Literal["cartoon", "caricature"] = "cartoon",
+    rig: Literal["transfer", "caricature"] = "transfer",
     texture_size: int = 1024,
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
@@ -76,10 +79,13 @@ def make_avatar(
         then at rest, ``avatar.vertices(avatar.rig.pose)`` as in the picture. False: the face is taken for neutral as
         it is drawn.
     gain : float or "auto"
-        Strength of the expressions; see :func:`toongeo.build_rig`.
+        Strength of the transferred expressions; see :func:`toongeo.build_rig`.
     method : {"cartoon", "caricature"}
         How the fitted face comes to its landmarks: by :func:`toongeo.align_face`, or in the deformation space of
         exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``.
+    rig : {"transfer", "caricature"}
+        Where the expressions come from: the template's, by deformation transfer, or the drawing's own, reconstructed
+        from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
     texture_size : int
         Side of the texture atlas in texels.
     progress : callable, optional
@@ -93,13 +99,15 @@ def make_avatar(
     Raises
     ------
     ValueError
-        If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, or the method is unknown.
+        If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, or method or rig is unknown.
     """
     align = ALIGNERS.get(method)
     if align is None:
         raise ValueError(f"method: expected one of {', '.join(ALIGNERS)}, got {method!r}")
     check_image(img)
     check_size(texture_size)
+    if rig not in ("transfer", "caricature"):
+        raise ValueError(f"rig: expected 'transfer' or 'caricature', got {rig!r}")
     clock = _Clock(progress)
 
     clock.start("fit")
@@ -117,17 +125,16 @@ def make_avatar(
     clock.start("align")
     face = align(fit, landmarks)
     clock.start("rig")
-    at_rest = neutral_face(face) if neutral else face
-    rig = fit_mouth(at_rest, build_rig(at_rest, gain=gain))
+    at_rest, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")
-    rig, eyes = fit_lids(at_rest, rig)
+    shapes, eyes = fit_lids(at_rest, shapes)
     # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
-    face = dataclasses.replace(face, vertices=rig.neutral + (face.vertices - at_rest.vertices))
-    rig = dataclasses.replace(rig, pose=fit_pose(rig, face.vertices, face.region("skin")))
+    face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - at_rest.vertices))
+    shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
     clock.start("texture")
     irises = find_irises(img, landmarks)
     eyes = aim_eyes(face, eyes, irises)
-    texture = bake_texture(img, face, rig=rig, size=texture_size, parse=parse)
+    texture = bake_texture(img, face, rig=shapes, size=texture_size, parse=parse)
     texture = bake_eyes(img, face, eyes, texture, irises)
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
@@ -138,7 +145,25 @@ def make_avatar(
         seconds=clock.stop(),
         warnings=(*fit.report.warnings, *shape_warnings(face, eyes, quality)),
     )
-    return Avatar(fit=fit, parse=parse, face=face, rig=rig, eyes=eyes, texture=texture, report=report)
+    return Avatar(fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report)
+
+
+def _rigged(
+    face: AlignedFace,
+    landmarks: np.ndarray,
+    rig: Literal["transfer", "caricature"],
+    *,
+    neutral: bool,
+    gain: float | Literal["auto"],
+) -> tuple[AlignedFace, Rig]:
+    """The face at rest, and its expressions with the contacts of the mouth."""
+    if rig == "caricature":
+        shapes = caricature_rig(face, landmarks)
+        at_rest = dataclasses.replace(face, vertices=shapes.neutral)
+    else:
+        at_rest = neutral_face(face) if neutral else face
+        shapes = build_rig(at_rest, gain=gain)
+    return at_rest, fit_mouth(at_rest, shapes)
 
 
 class _Clock:
