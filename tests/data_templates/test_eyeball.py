@@ -72,7 +72,7 @@ def test_disc_is_single_valued_and_has_no_flipped_face(ball):
     across = V[side, 0] * disc[side, 1] - V[side, 1] * disc[side, 0]
     np.testing.assert_allclose(across, 0, atol=1e-15)  # the azimuth is kept
     iris = V[:, 2] >= np.cos(ball["iris_angle"]) - 1e-9
-    assert radius[iris].max() == pytest.approx(0.55)
+    assert radius[iris].max() == pytest.approx(0.36)
 
 
 def test_mirror_symmetry_is_exact(ball):

@@ -21,7 +21,7 @@ HUBER = 2.0  # s.d. beyond which a vertex pulls with constant force
 RIM_POINTS = 30  # a rim counts as so many independent ones
 FRONT = 0.9  # of the radius: how far from the line of sight the lids' edges may be
 OFF = 0.035  # of the radius: how far off the eyeball the lids' edges lie, and other skin at least
-WANDER = np.array([0.4, 0.5])  # of the opening's width and height: how far an iris moves from its middle
+WANDER = np.array([0.4, 0.35])  # of the opening's width and height: how far an iris moves from its middle
 REACH = 2.0  # widths of the opening: skin farther away is not looked at
 
 
