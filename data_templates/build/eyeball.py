@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 _IRIS_MM = 11.71  # diameter
 _PUPIL_MM = 3.8
 _HEAD_RADIUS_MM = 15.1  # of the default head's eyeballs
-# Disc radius of the limbus and of two polar angles: a person's iris gets 13 % of the disc's area for 4 % of the sphere's,
-# and what the wide eyes of drawings show beside it most of the rest.
+# Disc radius of the limbus and of two polar angles: a person's iris gets 13 % of the disc's area for 4 % of the
+# sphere's, and what the wide eyes of drawings show beside it most of the rest.
 _IRIS_DISC = 0.36
 _SHOWN, _SHOWN_DISC = np.radians([75.0, 105.0]), (0.8, 0.92)
 
