@@ -19,7 +19,7 @@ NEAR = 2.0  # radii from an eyeball's centre: skin farther from it does not come
 SHUT = 0.05  # of the radius: how far skin stays off when the eye is shut
 PAIRED_CLEARANCE = 0.03  # of the radius: what an expression leaves of it
 PAIRED = 2.0  # from closed lids an expression must be clear up to this weight, so that two at once are
-ROUNDS = 6  # of pushing out and smoothing
+ROUNDS, SMOOTHED = 6, 3  # of pushing out; the first of these spread it
 SHORTEST = 0.05  # of the way: what is inside earlier than that is pushed as if it were there
 
 
@@ -79,12 +79,22 @@ def cleared(start: np.ndarray, way: np.ndarray, radius: np.ndarray, spread: sp.c
         Means over neighbours, by which the change of a way spreads.
     """
     change = np.zeros(way.shape)
+    lack = shortfall(start, way, radius)
+    reached = lack.any(1)
+    if not reached.any():
+        return way
+    for _ in range(SMOOTHED):
+        reached |= spread @ reached > 0
+    if 2 * reached.sum() < len(reached):
+        at, way = np.flatnonzero(reached), way.copy()
+        way[at] = cleared(start[at], way[at], radius[at], spread[at][:, at])
+        return way
     for k in range(ROUNDS):
         lack = shortfall(start, way + change, radius)
         if not lack.any():
             break
         change += lack
-        if k < ROUNDS - 3:
+        if k < SMOOTHED:
             mean = spread @ change
             wider = (mean**2).sum(1) > (change**2).sum(1)
             change[wider] = mean[wider]

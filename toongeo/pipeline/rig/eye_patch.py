@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from toongeo._read_only import read_only
-from toongeo.geometry import laplacian_align
+from toongeo.geometry import LaplacianAligner, laplacian_align
 from toongeo.model import MorphableModel
 
 
@@ -45,6 +45,21 @@ class EyePatch:
             weight=np.inf,
             fixed=np.searchsorted(self.vertices, self.border),
         )
+
+    def followed(self, anchors: np.ndarray, moves: np.ndarray) -> np.ndarray:
+        """How far the patch goes, (k, 3), if some of its vertices (a,) go by moves (a, 3).
+
+        The same deformation: with uniform weights it depends on the mesh but not on its shape, and is kept for anchors
+        that come again.
+        """
+        return _follower(self, tuple(anchors.tolist())).align(moves)
+
+
+@lru_cache(maxsize=8)
+def _follower(patch: EyePatch, anchors: tuple[int, ...]) -> LaplacianAligner:
+    at = np.searchsorted(patch.vertices, anchors)
+    fixed = np.setdiff1d(np.searchsorted(patch.vertices, patch.border), at)
+    return LaplacianAligner(np.zeros((len(patch.vertices), 3)), patch.faces, at, weight=np.inf, fixed=fixed)
 
 
 @lru_cache(maxsize=8)

@@ -22,6 +22,7 @@ RIM_POINTS = 30  # a rim counts as so many independent ones
 FRONT = 0.9  # of the radius: how far from the line of sight the lids' edges may be
 OFF = 0.035  # of the radius: how far off the eyeball the lids' edges lie, and other skin at least
 WANDER = np.array([0.4, 0.35])  # of the opening's width and height: how far an iris moves from its middle
+NEAR = 1.6  # radii from where a centre is looked for: skin farther away does not come into the eyeball
 REACH = 2.0  # widths of the opening: skin farther away is not looked at
 
 
@@ -122,7 +123,9 @@ def _sphere(points: np.ndarray, skin: np.ndarray, axes: np.ndarray) -> tuple[np.
     wanted = _robust_sphere(points, _behind(points, USUAL * size), USUAL * size)[1]
     best, least = (points.mean(0), size), np.inf
     for radius in np.linspace(LEAST, MOST, STEPS) * size:
-        centre, _ = _robust_sphere(points, _behind(points, radius), radius, skin)
+        behind = _behind(points, radius)
+        near = skin[np.linalg.norm(skin - behind, axis=1) < NEAR * radius]
+        centre, _ = _robust_sphere(points, behind, radius, near)
         offset = points - centre
         beside = np.sqrt(((offset[:, None] - (offset @ axes.T)[..., None] * axes) ** 2).sum(-1)).max() / radius
         through = 1 - np.linalg.norm(skin - centre, axis=1).min(initial=np.inf) / radius

@@ -50,7 +50,6 @@ def follow_gaze(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
                 taper = np.sin(0.5 * np.pi * np.minimum(1.0, np.minimum(way, 1 - way) / TAPER))
                 for row in lid:
                     turned[row] = Rotation.from_rotvec(np.outer(scale * share * taper, turn)).apply(offset[row])
-            pulled = patch.pulled(offset, at, turned[at])
-            gaze[GAZE_NAMES.index(look), patch.vertices] = pulled - offset[patch.vertices]
+            gaze[GAZE_NAMES.index(look), patch.vertices] = patch.followed(at, turned[at] - offset[at])
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, gaze=gaze, report=report)

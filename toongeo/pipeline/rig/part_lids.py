@@ -49,8 +49,7 @@ def part_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
                 change = _parting(rings, rig.neutral, shape, up, least)
                 if not change.any():
                     continue
-                pulled = patch.pulled(rig.neutral, at, rig.neutral[at] + change[at])
-                shapes[k, patch.vertices] += pulled - rig.neutral[patch.vertices]
+                shapes[k, patch.vertices] += patch.followed(at, change[at])
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
 

@@ -5,20 +5,19 @@ import time
 
 import numpy as np
 
-from toongeo.geometry import self_intersections
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.clear_lids import neighbour_means
+from toongeo.pipeline.rig.crossing_triangles import Sheet, around, crossing_all, crossing_triangles, smoothed_ways
 from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch
 from toongeo.pipeline.rig.fit_eyes import SIDES
+from toongeo.pipeline.rig.lid_rings import lid_rings
 from toongeo.pipeline.rig.rig import Rig
 
 MOVES = 0.3  # mm: shapes that move the skin around an eye less than this are not looked at
 SHARP = np.radians(65.0)  # between the normals of neighbours: skin that passes through itself has such an edge nearby
-REACH = 10  # edges from there within which it is looked for
+REACH = 8  # edges from there within which it is looked for
 ALLOWED = 6  # triangles that may intersect others
-AGAIN = 4  # edges from what was found, within which it is looked for again
-DAMPING = (0.4, 0.7, 1.0)  # by how much a shape is weakened where it folds, the first, second and third time
+DAMPING = (0.4, 0.7, 1.0, 1.0, 1.0)  # by how much a shape is weakened where it folds, time after time
 SPREADING = 12  # edges over which that fades into the surroundings
 
 
@@ -40,27 +39,34 @@ def unfold_lids(face: AlignedFace, rig: Rig) -> Rig:
         A new one; only shapes that folded the skin differ.
     """
     started = time.perf_counter()
-    deltas, gaze = rig.deltas.copy(), rig.gaze.copy()
+    shapes = np.concatenate([rig.deltas, rig.gaze])
     blinks = [k for k, name in enumerate(rig.names) if name.startswith("eyeBlink")]
     for name in SIDES:
         patch = eye_patch(face.model, name)
         pairs = _neighbours(patch)
-        sharp, crossing = _sharp(patch, pairs, rig.neutral), _crossing(patch, rig.neutral, np.arange(len(patch.faces)))
-        for shapes in (deltas, gaze):
-            moves = np.abs(shapes[:, patch.vertices]).max(axis=(1, 2)) > MOVES
-            if shapes is deltas:
-                moves[blinks] = False
-            for k in np.flatnonzero(moves):
-                V = rig.neutral + shapes[k]
-                suspects, reach = pairs[_sharp(patch, pairs, V) & ~sharp], REACH
-                for damping in DAMPING if len(suspects) else ():
-                    near = _around(face.model, patch.vertices[patch.faces[suspects]], reach)[patch.vertices] > 0
-                    hit = np.setdiff1d(_crossing(patch, V, np.flatnonzero(near[patch.faces].any(1))), crossing)
-                    if len(hit) <= ALLOWED:
-                        break
-                    weight = _around(face.model, patch.vertices[patch.faces[hit]], SPREADING)
-                    shapes[k] *= 1 - damping * weight[:, None]
-                    V, suspects, reach = rig.neutral + shapes[k], hit, AGAIN
+        moves = np.abs(shapes[:, patch.vertices]).max(axis=(1, 2)) > MOVES
+        moves[blinks] = False
+        still = _sharp(patch, pairs, rig.neutral)
+        bent = {k: pairs[_sharp(patch, pairs, rig.neutral + shapes[k]) & ~still] for k in np.flatnonzero(moves)}
+        rings = lid_rings(face.model, name).vertices
+        margin = np.abs(shapes[:, rings]).max(axis=(1, 2)) > MOVES
+        suspects = {k: np.unique(found) for k, found in bent.items() if len(found) or margin[k]}
+        margins = np.flatnonzero(np.isin(patch.faces, np.searchsorted(patch.vertices, rings)).any(1))
+        crossing = crossing_all(patch, rig.neutral)
+        blink = rig.names.index(f"eyeBlink{name.capitalize()}")
+        shapes[blink] = smoothed_ways(face.model, patch, rig.neutral, shapes[blink], crossing, ALLOWED)
+        looked_at = {k: np.union1d(_near(face.model, patch, at, REACH), margins) for k, at in suspects.items()}
+        for damping in DAMPING:
+            sheets = [Sheet(rig.neutral + shapes[k], triangles) for k, triangles in looked_at.items()]
+            for k, hit in zip(tuple(looked_at), crossing_triangles(patch, sheets), strict=True):
+                hit = np.setdiff1d(hit, crossing)
+                if len(hit) <= ALLOWED:
+                    del looked_at[k]
+                    continue
+                weight = around(face.model, patch.vertices[patch.faces[hit]], SPREADING)
+                shapes[k] *= 1 - damping * weight[:, None]
+                looked_at[k] = np.arange(len(patch.faces))  # what is weakened here may be pushed through what is not
+    deltas, gaze = shapes[: len(rig.deltas)], shapes[len(rig.deltas) :]
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
 
@@ -81,18 +87,7 @@ def _sharp(patch: EyePatch, pairs: np.ndarray, V: np.ndarray) -> np.ndarray:
     return np.asarray((normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(1) < np.cos(SHARP))
 
 
-def _crossing(patch: EyePatch, V: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """Those of some triangles (k,) of a patch that intersect others of them."""
-    if not len(triangles):
-        return triangles
-    return triangles[np.unique(self_intersections(V[patch.vertices], patch.faces[triangles]))]
-
-
-def _around(model: MorphableModel, vertices: np.ndarray, steps: int) -> np.ndarray:
-    """Weights (n,): 1 at vertices, less and less around them, zero beyond so many steps."""
-    weight = np.zeros(len(model.mean))
-    weight[vertices] = 1
-    means = neighbour_means(model)
-    for _ in range(steps):
-        weight = np.maximum(weight, means @ weight)
-    return weight
+def _near(model: MorphableModel, patch: EyePatch, suspects: np.ndarray, reach: int) -> np.ndarray:
+    """The triangles of a patch within so many edges of some of them (s,)."""
+    near = around(model, patch.vertices[patch.faces[suspects]], reach)[patch.vertices] > 0
+    return np.flatnonzero(near[patch.faces].any(1))
