@@ -41,6 +41,24 @@ def test_names_and_vectors_say_the_same(avatar):
     np.testing.assert_array_equal(avatar.vertices({"jawOpen": 0.6}), avatar.vertices(weights))
 
 
+def test_the_pose_is_the_face_of_the_picture(cartoon):
+    """A smile was taken out of this face, and its eyes look aside: in its pose both are back."""
+    avatar = make_avatar(*cartoon("astronaut"), texture_size=64)
+    assert avatar.pose and all(0 < weight <= 1 for weight in avatar.pose.values())
+    expected = np.r_[avatar.rig.pose, avatar.eyes.pose]
+    np.testing.assert_array_equal(avatar.rig.weights(avatar.pose), expected)
+    assert expected[:46].any() and expected[46:].any()
+    for side in (0, 1):
+        np.testing.assert_array_equal(avatar.eye_vertices(side, avatar.pose), avatar.eyes.looking_as_drawn(side))
+    mouth = avatar.face.region("lips")
+    expression = {name: weight for name, weight in avatar.pose.items() if name in avatar.names}
+
+    def off(weights):
+        return np.linalg.norm((avatar.vertices(weights) - avatar.face.vertices)[mouth], axis=1).mean()
+
+    assert off(avatar.pose) == off(expression) < 0.5 * off(None)
+
+
 def test_gaze_moves_the_eyeball_and_only_the_skin_around_it(avatar):
     look = {"eyeLookUpLeft": 1.0}
     moved = (avatar.vertices(look) != avatar.vertices()).any(1)
