@@ -59,6 +59,16 @@ class Avatar:
         return self.rig.names
 
     @property
+    def pose(self) -> dict[str, float]:
+        """The weights, without zeros, with which the avatar looks as in its picture.
+
+        Expressions are those that :func:`toongeo.neutral_face` took out of the face (``rig.pose``), ``eyeLook*`` the
+        gaze (``eyes.pose``). ``avatar.render(avatar.pose)`` shows the picture's face, ``avatar.render()`` one at rest.
+        """
+        names, weights = (*self.names, *GAZE_NAMES), np.r_[self.rig.pose, self.eyes.pose]
+        return {name: weight for name, weight in zip(names, weights.tolist(), strict=True) if weight != 0}
+
+    @property
     def faces(self) -> np.ndarray:
         """Triangles (m, 3) of the head; the eyeballs are meshes of their own."""
         return self.face.faces

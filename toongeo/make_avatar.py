@@ -76,7 +76,7 @@ def make_avatar(
         Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
     neutral : bool
         Take a clear expression of the mouth out of the face (:func:`toongeo.neutral_face`): ``avatar.vertices()`` is
-        then at rest, ``avatar.vertices(avatar.rig.pose)`` as in the picture. False: the face is taken for neutral as
+        then at rest, ``avatar.vertices(avatar.pose)`` as in the picture. False: the face is taken for neutral as
         it is drawn.
     gain : float or "auto"
         Strength of the transferred expressions; see :func:`toongeo.build_rig`.

@@ -116,7 +116,8 @@ def _write_vrm(
     scene = avatar_scene(avatar, crop=crop, textured=_check_texture(texture) is not None)
     # Bones turn the eyes, which therefore need no targets; the lids that follow are the head's.
     still = (replace(m, targets=None, target_names=()) if m.name.startswith("eye_") else m for m in scene.meshes)
-    sideways, updown = avatar.eyes.turn.mean(0).tolist()
+    # One range for both eyes: that of the eye whose iris would leave its opening first.
+    sideways, updown = avatar.eyes.turn.min(0).tolist()
     write_vrm(
         path,
         Scene(tuple(still)),

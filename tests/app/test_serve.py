@@ -97,6 +97,15 @@ def test_others_get_nothing(server, change, headers, code):
     error.value.close()
 
 
+def test_two_hosts_or_origins_are_one_too_many(server):
+    """A second header must neither pass nor disturb the server."""
+    for name, own in (("Host", f"{HOST}:{server.port}"), ("Origin", f"http://{HOST}:{server.port}")):
+        lines = {"Host": f"Host: {HOST}:{server.port}\r\n", name: f"{name}: {own}\r\n{name}: http://example.org\r\n"}
+        with socket.create_connection((HOST, server.port), timeout=10) as raw:
+            raw.sendall(f"GET /?token={server.token} HTTP/1.1\r\n{''.join(lines.values())}\r\n".encode())
+            assert raw.recv(64).startswith(b"HTTP/1.1 403")
+
+
 def test_sockets_of_others_are_refused(server):
     refused = load_websockets().InvalidStatus
     for origin in ("https://example.org", "null", f"http://{HOST}:1"):

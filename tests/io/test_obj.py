@@ -25,6 +25,14 @@ def test_round_trip(tmp_path, scene):
     np.testing.assert_array_equal(read_image(tmp_path / "Gesicht ü.png"), scene.meshes[0].texture)
 
 
+def test_a_name_cannot_write_lines_of_its_own(tmp_path, scene):
+    write_obj(tmp_path / "a\nv 0 0 0\u2028.obj", scene)
+    assert {p.name for p in tmp_path.iterdir()} == {"a\nv 0 0 0\u2028.obj", "a_v 0 0 0_.mtl", "a_v 0 0 0_.png"}
+    assert "mtllib a_v 0 0 0_.mtl" in (tmp_path / "a\nv 0 0 0\u2028.obj").read_text().split("\n")
+    got = read_obj(tmp_path / "a\nv 0 0 0\u2028.obj")
+    assert len(got.vertices) == sum(len(mesh.vertices) for mesh in scene.meshes)
+
+
 def test_material_library(tmp_path, scene):
     other = np.zeros((4, 4, 3), np.uint8)
     first, *_, last = scene.meshes

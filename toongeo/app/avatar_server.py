@@ -17,6 +17,7 @@ from toongeo.driving.websockets_adapter import load_websockets
 
 HOST = "127.0.0.1"  # loopback, and nothing else: a face is nobody else's business
 LARGEST = 16_384  # bytes of a message; 54 weights with their names take 2,000
+PATIENCE = 1.0  # s that a page has to say goodbye when the server ends
 PAGE, SOURCE = "/page", "/source"
 
 
@@ -72,6 +73,7 @@ class AvatarServer:
             self.port,
             process_request=self._answer,
             max_size=LARGEST,
+            close_timeout=PATIENCE,
             compression=None,
         )
         self.port = self._server.sockets[0].getsockname()[1]
@@ -109,10 +111,10 @@ class AvatarServer:
 
     def _refusal(self, request: Any) -> tuple[HTTPStatus, str] | None:
         hosts = {f"{name}:{self.port}" for name in (HOST, "localhost")}
-        if request.headers.get("Host") not in hosts:  # a name that an attacker made point at this computer
+        named, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        if len(named) != 1 or named[0] not in hosts:  # a name that an attacker made point at this computer
             return HTTPStatus.FORBIDDEN, "this host is not served\n"
-        origin = request.headers.get("Origin")
-        if origin is not None and origin not in {f"http://{host}" for host in hosts}:
+        if not {f"http://{host}" for host in hosts}.issuperset(origins):
             return HTTPStatus.FORBIDDEN, "pages from elsewhere are not served\n"
         given = parse_qs(urlsplit(request.path).query).get("token", [""])[0]
         if not secrets.compare_digest(given.encode(), self.token.encode()):

@@ -24,7 +24,7 @@ INK, PAPER = (40, 40, 40), 255
 
 
 def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, tile: int = 320) -> np.ndarray:
-    """Input, clay and textured views, six expressions, and the report, on one sheet.
+    """Input, clay views at rest, textured views as drawn, six expressions, and the report, on one sheet.
 
     Parameters
     ----------
@@ -39,12 +39,12 @@ def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, til
     (3 * tile, 5 * tile, 3) uint8 RGB
     """
     views = [
-        [_titled(avatar.render(size=tile, yaw=yaw, textured=textured), f"{look}, {name}") for name, yaw in VIEWS]
-        for look, textured in (("clay", False), ("textured", True))
+        [_titled(avatar.render(pose, tile, yaw, textured=textured), f"{look}, {name}") for name, yaw in VIEWS]
+        for look, pose, textured in (("clay", None, False), ("as drawn", avatar.pose, True))
     ]
     posed = [_titled(avatar.render(weights, size=tile), name) for name, weights in EXPRESSIONS]
     input_tile = _titled(_input(img, landmarks, tile), "input")
-    overlay = _titled(_overlay(avatar, img, landmarks, tile), "aligned face over input")
+    overlay = _titled(_overlay(avatar, img, landmarks, tile), "as drawn, over input")
     rows = [
         [input_tile, *views[0], _words(avatar.report.lines(), tile)],
         [overlay, *views[1], posed[0]],
@@ -78,7 +78,7 @@ def _input(img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
 def _overlay(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
     corner, scale = _frame(landmarks, tile)
     camera = avatar.face.camera.cropped(corner, scale)
-    face = avatar.render(size=tile, camera=camera, textured=False).astype(float)
+    face = avatar.render(avatar.pose, tile, camera=camera, textured=False).astype(float)
     return np.rint(0.45 * _window(img, corner, scale, tile) + 0.55 * face).astype(np.uint8)
 
 

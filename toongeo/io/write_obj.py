@@ -23,7 +23,8 @@ def write_obj(path: str | os.PathLike[str], scene: Scene) -> None:
     Parameters
     ----------
     path
-        File to write, ``.obj``. Files of the other names are replaced.
+        File to write, ``.obj``. Files of the other names are replaced; they have ``_`` for line breaks, with which a
+        name would end inside the ``.obj``, and other characters that are not seen.
     scene
         Meshes with or without uv and texture.
 
@@ -42,14 +43,15 @@ def write_obj(path: str | os.PathLike[str], scene: Scene) -> None:
 
 def obj_files(path: Path, scene: Scene) -> dict[str | os.PathLike[str], bytes]:
     """The files by path; the ``.obj`` last: whoever sees it sees the files it names."""
+    stem = "".join(letter if letter.isprintable() else "_" for letter in path.stem)
     pictures: dict[bytes, str] = {}
     files: dict[str | os.PathLike[str], bytes] = {}
     materials: list[str] = []
     for number, mesh in enumerate(scene.meshes):
-        materials += _material(f"material_{number}", mesh, path.stem, pictures, files, path.parent)
-    files[path.with_suffix(".mtl")] = ("\n".join(materials) + "\n").encode()
+        materials += _material(f"material_{number}", mesh, stem, pictures, files, path.parent)
+    files[path.with_name(f"{stem}.mtl")] = ("\n".join(materials) + "\n").encode()
     vertices = ("\n".join(_rows("v", mesh.vertices)) for mesh in scene.meshes)
-    files[path] = obj_text(obj_frames(scene, f"{path.stem}.mtl"), vertices)
+    files[path] = obj_text(obj_frames(scene, f"{stem}.mtl"), vertices)
     return files
 
 

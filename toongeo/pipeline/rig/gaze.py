@@ -52,7 +52,7 @@ def gaze_weights(side: str, direction: np.ndarray, turn: ArrayLike = TURN) -> di
     x, y, z = direction / np.linalg.norm(direction)
     outward = np.rad2deg(np.arctan2(x, z)) / sideways * (1 if side == "left" else -1)
     upward = np.rad2deg(np.arcsin(y)) / updown
-    weights = np.clip([-outward, outward, upward, -upward], 0, 1).tolist()
+    weights = (np.clip([-outward, outward, upward, -upward], 0, 1) + 0.0).tolist()  # no -0.0
     return dict(zip(gaze_names(side), weights, strict=True))
 
 

@@ -1,6 +1,6 @@
 import { AnimationMixer } from 'three';
 import { loadAvatar } from './avatar.js';
-import { listen } from './live.js';
+import { listen, paced } from './live.js';
 import { buildPanel, byId } from './panel.js';
 import { Stage } from './stage.js';
 
@@ -70,17 +70,17 @@ async function start() {
     });
   }
 
-  // Weights may come a thousand times a second; sliders follow once a frame.
+  // Weights may come a thousand times a second; sliders and the picture follow as they can.
   let unseen = {};
+  const follow = paced(() => {
+    panel.show(unseen);
+    unseen = {};
+    stage.draw();
+  });
   const apply = (weights) => {
-    if (!Object.keys(unseen).length) {
-      requestAnimationFrame(() => {
-        panel.show(unseen);
-        unseen = {};
-      });
-    }
+    avatar.set(weights);
     Object.assign(unseen, weights);
-    set(weights);
+    follow();
   };
   tell(`${avatar.names.length} expressions. Drag to turn, scroll to zoom.`);
   if (settings.live) listen(settings.live, { apply, tell });
