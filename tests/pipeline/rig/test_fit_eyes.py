@@ -3,8 +3,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_eyes
-from toongeo.pipeline.rig.fit_eyes import LEAST, MOST, OFF, _robust_sphere, _sphere
-from toongeo.pipeline.rig.lid_rings import lid_rings
+from toongeo.pipeline.rig.fit_eyes import LEAST, MOST, OFF, WANDER, _robust_sphere, _sphere, _turn
+from toongeo.pipeline.rig.gaze import TURN
+from toongeo.pipeline.rig.lid_rings import lid_rings, opening_height
 
 AXES = np.array([[0.0, 0.0, 1.0]])
 
@@ -67,3 +68,22 @@ def test_gaze_turns_the_eyeball_about_its_centre(avatar):
     radius = np.linalg.norm(turned - avatar.eyes.centres[0], axis=1)
     np.testing.assert_allclose(radius, avatar.eyes.radii[0], rtol=1e-6)  # the unit sphere is stored in float32
     assert turned[0, 0] > rest[0, 0] + 0.4 * avatar.eyes.radii[0]
+
+
+def arch(width, height):
+    """An edge of a lid (9, 3) between the corners of an eye."""
+    x = np.linspace(-1, 1, 9)
+    return np.column_stack([width / 2 * x, height * (1 - x**2), np.zeros(9)])
+
+
+def test_eyes_turn_as_a_persons_where_the_opening_is_wide():
+    np.testing.assert_array_equal(_turn(arch(40, 20), arch(40, -20), 14.0), TURN)
+
+
+def test_in_a_small_opening_the_middle_of_the_iris_stays_in_it():
+    upper, lower = arch(12, 2.0), arch(12, -2.0)
+    travel = 14.0 * np.sin(np.radians(_turn(upper, lower, 14.0)))
+    np.testing.assert_allclose(travel, WANDER * [12, opening_height(upper, lower)], rtol=1e-12)
+    assert travel[0] < 6 and travel[1] <= 2
+    R = Rotation.from_rotvec([0.1, 0.2, 0.3]).as_matrix()
+    np.testing.assert_allclose(_turn(3 * upper @ R.T, 3 * lower @ R.T, 42.0), _turn(upper, lower, 14.0), rtol=1e-12)

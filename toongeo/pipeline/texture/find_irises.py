@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import numpy as np
@@ -16,22 +13,11 @@ from toongeo._read_only import read_only
 from toongeo.io import check_image, landmark_array
 from toongeo.pipeline.parse.cielab import cielab
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, EYE_RIGHT, opening_mask
+from toongeo.pipeline.texture.iris_scores import VIEW, WIDTH, iris_scores, squared_cost
 
-WIDTH = 48  # px of an eye in its view
-VIEW = 72  # px: side of a view
-# Semi-axes looked for, in widths of the eye, and height over width: drawn irises may be tall and fill the eye.
-SIZES = (0.12, 0.14, 0.165, 0.19, 0.22, 0.25, 0.29, 0.34, 0.4, 0.46)
-ASPECTS = (0.85, 1.0, 1.2, 1.45, 1.8)
-EDGE = 1.5  # px of a view: thickness of the two rings that are compared
-STEP = 0.25  # weight of the step along the rim, against a whole opening that is held
-# Cost, mean and s.d. of log size and log aspect.
-SIZE_PRIOR, ASPECT_PRIOR = (0.02, np.log(0.21), np.log(1.5)), (0.04, 0.0, np.log(1.3))
-PLACE_COST = 0.008  # of an iris a s.d. above or below the middle of the opening
-NARROW_COST = 0.3  # of an iris at a corner
 TOGETHER = 0.04, 0.12  # both eyes look alike: cost and s.d., in widths, of a difference of their places
 SHIFTS = range(-12, 13, 2)  # px of a view: differences that are tried
 COLOURED = 0.8  # how much colour speaks against sclera, against lightness
-BRIGHT_INSIDE = -0.4  # highlights in an iris count less than dark pixels beside it
 FILLS = 0.2  # of the opening: an iris that leaves less than this of it fills the eye
 LEAST_OPEN = 0.2  # height over width of an opening that shows an iris
 CONTRAST = 0.25  # of both eyes in the mean, and half of it of each
@@ -93,7 +79,10 @@ def find_irises(img: np.ndarray, landmarks: np.ndarray) -> tuple[Iris | None, Ir
     if not seen:
         return None, None
     best, found = -np.inf, [_Place(0.0, 0.0, 0.0, 0.0)] * len(seen)
-    for scores, size, aspect in _candidates(seen):
+    darkness, openings = np.stack([view.dark for view in seen]), np.stack([view.opening for view in seen])
+    for scores, size, aspect in iris_scores(darkness, openings):
+        if sum(view.max() for view in scores) <= best:
+            continue
         score, places = _best_places(scores)
         if score > best:
             best = score
@@ -168,54 +157,6 @@ def _darkness(crop: np.ndarray, opening: np.ndarray) -> Floats:
     return np.asarray(np.where(opening, np.clip((threshold - white) / (spread / 4), -1, 1), 0), np.float32)
 
 
-def _candidates(views: list[_View]) -> Iterator[tuple[list[Floats], float, float]]:
-    """Scores (VIEW, VIEW) of every place in each view, for each size and aspect."""
-    y = np.arange(VIEW)[:, None]
-    for size, aspect in itertools.product(SIZES, ASPECTS):
-        a, b = size * WIDTH, size * WIDTH * aspect
-        discs = [_disc(a + grow, b + grow) for grow in (-EDGE, 0.0, EDGE)]
-        cost = _cost(np.log(size), *SIZE_PRIOR) + _cost(np.log(aspect), *ASPECT_PRIOR)
-        yield [_score(view, discs) - _place_cost(view.opening, y) - cost for view in views], size, aspect
-
-
-def _score(view: _View, discs: list[Floats]) -> Floats:
-    """What each place holds of the dark pixels, as a share of the opening, plus the step of darkness along its rim."""
-    dark = [_sums(view.dark, disc) for disc in discs]
-    area = [_sums(view.opening, disc) for disc in discs]
-    held = _sums(np.maximum(view.dark, BRIGHT_INSIDE), discs[1]) / view.opening.sum()
-    rings = [area[1] - area[0], area[2] - area[1]]
-    inner, outer = ((dark[k + 1] - dark[k]) / np.maximum(rings[k], 1) for k in (0, 1))
-    visible = np.minimum(*rings) / (discs[2].sum() - discs[1].sum())
-    return np.asarray(held + STEP * visible * (inner - outer), np.float32)
-
-
-def _sums(image: Floats, disc: Floats) -> Floats:
-    return np.asarray(cv2.filter2D(image, -1, disc, borderType=cv2.BORDER_CONSTANT))
-
-
-def _disc(a: float, b: float) -> Floats:
-    """An ellipse of semi-axes a, b px with a soft rim, in an odd square."""
-    reach = int(np.ceil(max(a, b))) + 1
-    y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
-    return np.clip((1 - np.hypot(x / a, y / b)) * min(a, b) + 0.5, 0, 1).astype(np.float32)
-
-
-def _place_cost(opening: Floats, y: np.ndarray) -> Floats:
-    """Cost (VIEW, VIEW) of a centre off the opening's middle, or where the opening narrows to its corners."""
-    heights = opening.sum(0)
-    narrow = 1 - heights / heights.max()
-    middle = (opening * y).sum(0) / np.maximum(heights, 1)
-    middle[heights == 0] = VIEW / 2
-    outside = np.where(cv2.dilate(opening, np.ones((5, 5))) > 0, 0, np.inf)
-    return np.asarray(
-        outside + _cost(narrow, NARROW_COST, 0, 1) + _cost(y, PLACE_COST, middle, 0.15 * WIDTH), np.float32
-    )
-
-
-def _cost(value: Any, weight: float, mean: float, deviation: float) -> Any:
-    return weight * ((value - mean) / deviation) ** 2
-
-
 def _best_places(scores: list[Floats]) -> tuple[float, list[tuple[int, int]]]:
     """Best sum of scores and where (x, y) it is in each view; two places are drawn to each other."""
     if len(scores) == 1:
@@ -236,7 +177,7 @@ def _best_shift(scores: Floats, axis: int) -> tuple[Floats, np.ndarray]:
     best, origin = np.full_like(scores, -np.inf), np.zeros(scores.shape, int)
     places = np.arange(VIEW).reshape((-1, 1) if axis == 0 else (1, -1))
     for shift in SHIFTS:
-        moved = np.roll(scores, -shift, axis) - np.float32(_cost(shift, weight, 0, deviation * WIDTH))
+        moved = np.roll(scores, -shift, axis) - np.float32(squared_cost(shift, weight, 0, deviation * WIDTH))
         from_ = places + shift
         better = (moved > best) & (from_ >= 0) & (from_ < VIEW)
         best = np.where(better, moved, best)
