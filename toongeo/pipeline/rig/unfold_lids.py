@@ -16,8 +16,9 @@ from toongeo.pipeline.rig.rig import Rig
 
 MOVES = 0.3  # mm: shapes that move the skin around an eye less than this are not looked at
 LIDS_MOVE = 1.0  # mm: the margins of lids that move as much are always looked at
-SHARP = np.radians(65.0)  # between the normals of neighbours: skin that passes through itself has such an edge nearby
-REACH = 8  # edges from there within which it is looked for
+# Skin that passes through itself has edges nearby whose angle between the normals is this, and has grown by so much.
+SHARP, SHARPER = np.radians([65.0, 25.0])
+REACH = 6  # edges from there within which it is looked for
 ALLOWED = 6  # triangles that may intersect others
 # By how much a shape is weakened where it folds, time after time; if that did not help, around the whole eye.
 DAMPING = ((True, 0.4), (True, 0.7), (False, 0.5), (False, 0.7), (False, 1.0))
@@ -81,26 +82,27 @@ def _neighbours(patch: EyePatch) -> np.ndarray:
     return np.column_stack([order[:-1][same], order[1:][same]]) // 3
 
 
-def _sharp(patch: EyePatch, pairs: np.ndarray, V: np.ndarray) -> np.ndarray:
-    """Which pairs (e, 2) of neighbours meet at a sharp edge, (e,) bool."""
+def _angles(patch: EyePatch, pairs: np.ndarray, V: np.ndarray) -> np.ndarray:
+    """Angles (e,), radians, between the normals of pairs (e, 2) of neighbours."""
     a, b, c = (V[patch.vertices[corner]] for corner in patch.faces.T)
     normals = np.cross(b - a, c - a)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    return np.asarray((normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(1) < np.cos(SHARP))
+    return np.asarray(np.arccos(np.clip((normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(1), -1, 1)))
 
 
 def _suspects(model: MorphableModel, side: str, neutral: np.ndarray, shapes: np.ndarray) -> dict[int, np.ndarray]:
     """The triangles of a patch that may cross, for each shape of which there are some.
 
-    Those around edges that are sharp and were not, and the margins of lids that move.
+    Those around edges that have become sharp, and the margins of lids that move.
     """
     patch, rings = eye_patch(model, side), lid_rings(model, side).vertices
     pairs = _neighbours(patch)
-    still = _sharp(patch, pairs, neutral)
+    still = _angles(patch, pairs, neutral)
     margins = np.isin(patch.faces, np.searchsorted(patch.vertices, rings)).any(1)
     found = {}
     for k in np.flatnonzero(np.abs(shapes[:, patch.vertices]).max(axis=(1, 2)) > MOVES):
-        sharp = np.unique(pairs[_sharp(patch, pairs, neutral + shapes[k]) & ~still])
+        bent = _angles(patch, pairs, neutral + shapes[k])
+        sharp = np.unique(pairs[(bent > SHARP) & (bent > still + SHARPER)])
         near = around(model, patch.vertices[patch.faces[sharp]], REACH)[patch.vertices] > 0
         triangles = near[patch.faces].any(1)
         if np.abs(shapes[k, rings]).max() > LIDS_MOVE:
