@@ -11,11 +11,9 @@ from toongeo.pipeline.rig.clear_lids import CLEARANCE, outwards
 from toongeo.pipeline.rig.crossing_triangles import Sheet, around, crossing_all, crossing_triangles, smoothed_ways
 from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
-from toongeo.pipeline.rig.lid_rings import lid_rings
 from toongeo.pipeline.rig.rig import Rig
 
 MOVES = 0.3  # mm: shapes that move the skin around an eye less than this are not looked at
-LIDS_MOVE = 1.0  # mm: the margins of lids that move as much are always looked at
 # Skin that passes through itself has edges nearby whose angle between the normals is this, and has grown by so much.
 SHARP, SHARPER = np.radians([65.0, 25.0])
 REACH = 6  # edges from there within which it is looked for
@@ -93,22 +91,18 @@ def _angles(patch: EyePatch, pairs: np.ndarray, V: np.ndarray) -> np.ndarray:
 def _suspects(model: MorphableModel, side: str, neutral: np.ndarray, shapes: np.ndarray) -> dict[int, np.ndarray]:
     """The triangles of a patch that may cross, for each shape of which there are some.
 
-    Those around edges that have become sharp, and the margins of lids that move.
+    Those around edges that have become sharp.
     """
-    patch, rings = eye_patch(model, side), lid_rings(model, side).vertices
+    patch = eye_patch(model, side)
     pairs = _neighbours(patch)
     still = _angles(patch, pairs, neutral)
-    margins = np.isin(patch.faces, np.searchsorted(patch.vertices, rings)).any(1)
     found = {}
     for k in np.flatnonzero(np.abs(shapes[:, patch.vertices]).max(axis=(1, 2)) > MOVES):
         bent = _angles(patch, pairs, neutral + shapes[k])
         sharp = np.unique(pairs[(bent > SHARP) & (bent > still + SHARPER)])
-        near = around(model, patch.vertices[patch.faces[sharp]], REACH)[patch.vertices] > 0
-        triangles = near[patch.faces].any(1)
-        if np.abs(shapes[k, rings]).max() > LIDS_MOVE:
-            triangles |= margins
-        if triangles.any():
-            found[int(k)] = np.flatnonzero(triangles)
+        if len(sharp):
+            near = around(model, patch.vertices[patch.faces[sharp]], REACH)[patch.vertices] > 0
+            found[int(k)] = np.flatnonzero(near[patch.faces].any(1))
     return found
 
 
