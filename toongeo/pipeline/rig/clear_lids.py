@@ -79,8 +79,10 @@ def cleared(start: np.ndarray, way: np.ndarray, radius: np.ndarray, spread: sp.c
         Means over neighbours, by which the change of a way spreads.
     """
     change = np.zeros(way.shape)
-    lack = shortfall(start, way, radius)
-    reached = lack.any(1)
+    far = np.maximum(np.linalg.norm(start, axis=1) - radius, 0.0)
+    may = np.flatnonzero((way**2).sum(1) > far**2)
+    reached = np.zeros(len(way), bool)
+    reached[may] = shortfall(start[may], way[may], radius[may]).any(1)
     if not reached.any():
         return way
     for _ in range(SMOOTHED):

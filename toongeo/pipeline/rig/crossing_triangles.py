@@ -44,16 +44,19 @@ def crossing_all(patch: EyePatch, V: np.ndarray) -> np.ndarray:
 
 
 def smoothed_ways(
-    model: MorphableModel, patch: EyePatch, start: np.ndarray, ways: np.ndarray, known: np.ndarray, allowed: int
+    model: MorphableModel, patch: EyePatch, start: np.ndarray, ways: np.ndarray, allowed: int
 ) -> np.ndarray:
     """Ways (n, 3) from ``start`` (n, 3), made alike where they lead triangles of a patch through each other.
 
-    Neighbours that go the same way cannot meet. ``known`` are the triangles that cross in any case, and ``allowed`` is
-    how many others may.
+    Neighbours that go the same way cannot meet. What crosses at the start may go on, and so many others as are
+    ``allowed``.
     """
-    best, least = ways, np.inf
+    best, least, known = ways, np.inf, None
     for _ in range(ROUNDS):
-        hit = np.setdiff1d(crossing_all(patch, start + ways), known)
+        hit = crossing_all(patch, start + ways)
+        if len(hit) > allowed:
+            known = crossing_all(patch, start) if known is None else known
+            hit = np.setdiff1d(hit, known)
         if len(hit) < least:
             best, least = ways, len(hit)
         if least <= allowed:

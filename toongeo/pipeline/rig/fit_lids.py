@@ -43,7 +43,7 @@ def fit_lids(face: AlignedFace, rig: Rig, *, close: bool = True) -> tuple[Rig, E
     if close:
         rig = close_lids(face, rig, eyes)
     rig = part_lids(face, follow_gaze(face, rig, eyes), eyes)
-    rig = unfold_lids(face, clear_lids(face, rig, eyes))
+    rig = unfold_lids(face, clear_lids(face, rig, eyes), eyes)
     rig = line_sockets(face, rig, eyes)
     report = dict(rig.report)
     for name in SIDES:

@@ -7,7 +7,7 @@ import numpy as np
 
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.clear_lids import outwards
-from toongeo.pipeline.rig.crossing_triangles import crossing_all, smoothed_ways
+from toongeo.pipeline.rig.crossing_triangles import smoothed_ways
 from toongeo.pipeline.rig.eye_patch import EyePatch, eye_patch, sagitta
 from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
 from toongeo.pipeline.rig.lid_rings import LidRings, lid_rings, opening_height
@@ -57,9 +57,8 @@ def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         off = _clearances(rings, V, radius)
         moves[at] = _edge_moves(face.camera.view(V[at])[:, :2], V[at] - centre, sight[at], radius, off)
         patch = eye_patch(face.model, name)
-        known = crossing_all(patch, V)
         bent = _bent(face.camera, patch, V, at, moves)
-        bent = V + smoothed_ways(face.model, patch, V, bent - V, known, 0)
+        bent = V + smoothed_ways(face.model, patch, V, bent - V, 0)
         V = bent + np.where(skin[:, None], outwards(bent - centre, radius * (1 + GAPS[0]) + dips / radius), 0.0)
     report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
     return dataclasses.replace(rig, neutral=V, report=report)
