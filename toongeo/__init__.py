@@ -74,5 +74,12 @@ __getattr__, __dir__, __all__ = attach(
         "exaggerate": "caricature",
         "face_space": "caricature",
         "fit_caricature": "caricature",
+        "edit_expression": "edit_expression",
+        "ExpressionEditor": "expression_editor",
+        "ClassicalTextureGenerator": "caricature",
+        "TextureGenerator": "protocols",
+        "TextureGeometry": "protocols",
+        "attention_map": "caricature",
+        "compose_texture": "caricature",
     },
 )
