@@ -9,7 +9,7 @@ import numpy as np
 from toongeo.avatar import Avatar, Weights
 from toongeo.caricature import ClassicalTextureGenerator, compose_texture
 from toongeo.caricature._picture_mesh import picture_mesh
-from toongeo.caricature._picture_warp import picture_warp
+from toongeo.caricature._picture_warp import Stroke, picture_warp
 from toongeo.io import check_image, landmark_array
 from toongeo.make_avatar import make_avatar
 from toongeo.pipeline import FaceFit
@@ -131,10 +131,14 @@ class ExpressionEditor:
         gaze = dict(zip(GAZE_NAMES, beta[len(self.avatar.rig.names) :].tolist(), strict=True))
         moved = np.concatenate([V, *(self.avatar.eyes.looking(side, gaze) for side in range(len(SIDES)))])
         renewed = np.zeros(len(moved), np.float32)
+        strokes: list[Stroke] = []
         if isinstance(self._generator, ClassicalTextureGenerator):
             renewed[: len(V)] = self._generator.renewed(geometry)
+            strokes = self._generator.lash_strokes(geometry)
         out = self._img.copy()
         drawn = self._warp.redrawn(moved, new, new - texture, renewed)
+        drawn = self._warp.stroked(drawn, moved, strokes)
+        drawn = np.where(self._warp.freedom[..., None] > 0, drawn, self._warp.picture)
         out[self._warp.box] = np.clip(np.rint(drawn), 0, 255).astype(np.uint8)
         return out
 

@@ -11,8 +11,8 @@ from toongeo.pipeline.rig.lid_rings import lid_rings
 from toongeo.pipeline.texture.diffuse_over_mesh import diffuse_over_mesh
 from toongeo.render import uv_to_px
 
-STRETCHED = 1.35  # growth by which a blink spreads what is drawn beside the eye over the lid
-UNLIKE = 14.0  # CIELAB: colours farther from the skin's are lines, brows, paint
+STRETCHED = 1.2  # growth by which a blink spreads what is drawn beside the eye over the lid
+LEAST_UNLIKE, MOST_UNLIKE = 4.0, 16.0  # CIELAB: colours farther from the skin's are lines, brows, paint
 SOFTEN = 3  # passes over the border of the lid
 LINE = 0.045  # of the eye's width: thickness of a lash line
 FINE = 4  # subtexels a side for lines
@@ -33,24 +33,31 @@ def lid_zones(model: MorphableModel, rig: Rig) -> np.ndarray:
         zone[lid_rings(model, name).upper] = 1
         for _ in range(SOFTEN):
             zone = np.maximum(zone, (edges @ zone) / degree)
-        zones[side] = zone
+        zones[side] = 1 - (1 - zone) ** 2
     return zones
 
 
 def lid_skin(model: MorphableModel, colours: np.ndarray, zones: np.ndarray, skin: np.ndarray) -> np.ndarray:
     """Colours (n, 3) with those of the lids diffused from the skin around the eye; lines and brows lend nothing."""
     lab = to_lab(colours)
-    plain = np.linalg.norm(lab - np.median(lab[skin], axis=0), axis=1) < UNLIKE
+    away = np.linalg.norm(lab - np.median(lab[skin], axis=0), axis=1)
+    # In a flat drawing a little grey is already the edge of a line.
+    limit = np.clip(2.0 * np.median(away[skin]), LEAST_UNLIKE, MOST_UNLIKE)
     eye = model.region("eye_left") | model.region("eye_right")
-    around = model.region("face") & ~eye & ~model.region("lips") & (zones.max(0) == 0)
-    known = around & plain if (around & plain).any() else around
+    rims = np.zeros(len(lab), bool)
+    for name in ("left", "right"):
+        rims[lid_rings(model, name).vertices] = True
+    around = model.region("face") & ~rims & ~model.region("lips") & (~eye | (zones.max(0) > 0))
+    # Brows and lashes darken the skin beside them, which no lid should inherit.
+    plain = around & (away < limit) & (lab[:, 0] > np.median(lab[skin, 0]) - 0.5 * limit)
+    known = plain if plain.any() else around
     outside = model.region("face")
     triangles = model.faces[outside[model.faces].all(1)]
     filled, _ = diffuse_over_mesh(triangles, np.asarray(colours, float), known)
     edges = adjacency(triangles, len(colours)).astype(float)
     degree = np.maximum(np.asarray(edges.sum(1)).reshape(-1, 1), 1)
     for _ in range(4 * SOFTEN):
-        filled = np.where(known[:, None], filled, (edges @ filled) / degree)
+        filled = np.where((known & (zones.max(0) == 0))[:, None], filled, (edges @ filled) / degree)
     return np.asarray(filled, np.float32)
 
 

@@ -9,6 +9,7 @@ from toongeo.model import MorphableModel
 
 DEEP = 0.3  # of the mouth's width: over this depth behind the lips the light falls to 1/e
 DIMMEST = 0.22  # of the light, at the back of the mouth
+TEETH_LIGHT = 0.6  # of the light on teeth that does not depend on how deep they stand
 STREWN = 9.0  # L: spread of the lightness of shaded skin; a flatter drawing gets flatter teeth
 COLOURED = 8.0  # chroma by which lips must differ from the skin to tell the hue of the tongue
 TONGUE_HUE = np.array([22.0, 10.0])  # a*, b* of a tongue beside those of skin, where lips say nothing
@@ -46,7 +47,10 @@ def mouth_palette(model: MorphableModel, V: np.ndarray, colours: np.ndarray, lip
         where = model.region(region)
         filled[where] = match_colours(255.0 * model.albedo_mean[where], mean, contrast)
     inner = np.any([model.region(name) for name in ("mouth_cavity", "teeth_upper", "teeth_lower", "tongue")], axis=0)
-    filled[inner] *= _light_inside(model, V)[inner, None]
+    light = _light_inside(model, V)
+    teeth_region = model.region("teeth_upper") | model.region("teeth_lower")
+    light[teeth_region] = TEETH_LIGHT + (1 - TEETH_LIGHT) * light[teeth_region]
+    filled[inner] *= light[inner, None]
     return filled
 
 

@@ -82,6 +82,7 @@ def picture_mesh(face: AlignedFace, eyes: Eyes) -> PictureMesh:
     shown, cosine = _shown(px, face.camera.depth(V), F), _cosines(face.camera.view(V), F)
     seen = np.zeros(len(V), np.float32)
     seen[F[shown]] = 1
+    seen[: len(face.vertices)][model.region("lips") & ~inner] = 1  # between closed lips the picture shows their line
     soft = np.ones(len(V), bool)
     lips_and_lids = model.region("lips") | model.region("eye_left") | model.region("eye_right")
     soft[: len(face.vertices)] = lips_and_lids | inner | socket

@@ -1,5 +1,6 @@
 """A picture redrawn with its face moved."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import cv2
@@ -16,8 +17,21 @@ FALLOFF = 2.2  # of the greatest motion: over this distance the neighbourhood co
 LEAST_FALLOFF = 0.12  # of the face's width
 CALM = 0.05  # of the face's width: over this distance the motion dies down towards hair and ears
 EYE_LINE, MOUTH_LINE = 0.05, 0.015  # of the width of eye and mouth: reach of what is drawn along their rims
+BESIDE = 2.0  # lines: so near to what is seen of an eye, the rest looks alike
+LEAST_LINE = 1.5  # px
+JUMP = 1.5  # px between neighbours: motion that differs more has an edge in between, to be softened
 NOTHING = 255  # label where there is no face
 STILL = 1 / 64  # px; less motion is none
+
+
+@dataclass(frozen=True, eq=False)
+class Stroke:
+    """A line along vertices: path (k,), colour (3,) 0-255, width as a share of the path's chord, strength in [0, 1]."""
+
+    path: np.ndarray
+    colour: np.ndarray
+    width: float
+    strength: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +73,7 @@ class PictureWarp:
     def redrawn(
         self, vertices: np.ndarray, texture: np.ndarray, change: np.ndarray, renewed: np.ndarray
     ) -> np.ndarray:
-        """What is within :attr:`box` (h, w, 3), 0-255, with the mesh moved to ``vertices`` (n + e, 3).
+        """Colours (h, w, 3), 0-255, within :attr:`box`, with the mesh moved to ``vertices`` (n + e, 3).
 
         Parameters
         ----------
@@ -88,17 +102,42 @@ class PictureWarp:
         blended += (1 - share[rows]) * (painted - blended)
         outer[rows] += free * (blended - outer[rows])
         if not inner.any():
-            return outer
+            return _softened(outer, carried)
         rows = _bounds(inner, margin=2)
         motion = np.where(np.abs(motion) < STILL, 0, motion)[rows]
         trust = share[rows] * self._sampled(motion, self.interior, rows)[..., None]
         within = np.where(inner[rows][..., None], _remap(texture, uv[rows], cv2.INTER_LINEAR), 0)
-        within += trust * (self._sampled(motion, self.picture, rows) - within)
+        drawn = self._sampled(motion, self.picture, rows)
+        within = self._eyes_completed(within, drawn, (label == EYE)[rows], trust[..., 0])
+        within += trust * (drawn - within)
         # Colours of the inside reach a little under the rim, so that its edge can be soft.
         within = spread_field(within, inner[rows])
         over = rim_cover(label, self.lines)[rows][..., None]
         outer[rows] = over * outer[rows] + (1 - over) * within
-        return outer
+        return _softened(outer, carried)
+
+    def stroked(self, image: np.ndarray, vertices: np.ndarray, strokes: Sequence[Stroke]) -> np.ndarray:
+        """What :meth:`redrawn` gave, with lines drawn over it; they end in points."""
+        for stroke in strokes:
+            px = self.mesh.camera.project(vertices[stroke.path]) - self.corner
+            thick = stroke.width * float(np.linalg.norm(px[-1] - px[0]))
+            half = 0.5 * thick * np.sqrt(np.maximum(np.sin(np.linspace(0, np.pi, len(px))), 0.1))[:, None]
+            along = np.gradient(px, axis=0)
+            across = along[:, ::-1] * [-1, 1] / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+            outline = np.vstack([px + half * across, (px - half * across)[::-1]])
+            cover = np.zeros(self.freedom.shape, np.uint8)
+            cv2.fillPoly(cover, [np.rint(outline * 16).astype(np.int32)], 255, cv2.LINE_AA, 4)
+            image = image + (stroke.strength / 255 * cover * self.freedom)[..., None] * (stroke.colour - image)
+        return image
+
+    def _eyes_completed(self, painted: np.ndarray, drawn: np.ndarray, eye: np.ndarray, trust: np.ndarray) -> np.ndarray:
+        """Colours of eyes where they come into view: those of what is seen of them beside it, farther off the texture's."""
+        seen = eye & (trust > 0.99)
+        if not seen.any():
+            return painted
+        away = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
+        near = np.clip(2 - away / (BESIDE * self.lines[1]), 0, 1) * eye
+        return np.asarray(painted + near[..., None] * (spread_field(drawn, seen) - painted))
 
     def _drawn(self, px: np.ndarray, depth: np.ndarray, renewed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Triangle (h, w) at every pixel, -1 where none, and (h, w, 5): motion back to the picture, share, uv."""
@@ -166,12 +205,23 @@ def picture_warp(img: np.ndarray, landmarks: np.ndarray, mesh: PictureMesh, pars
     away = cv2.distanceTransform(1 - frame, cv2.DIST_L2, 5)[1:-1, 1:-1]
     t = np.clip(away / (CALM * width), 0, 1)
     mouth, eye = float(np.ptp(landmarks[48:60, 0])), max(float(np.ptp(landmarks[rows, 0])) for rows in (slice(36, 42), slice(42, 48)))
-    lines = max(MOUTH_LINE * mouth, 1.0), max(EYE_LINE * eye, 1.0)
+    lines = max(MOUTH_LINE * mouth, 1.0), max(EYE_LINE * eye, LEAST_LINE)
     freedom = (t * t * (3 - 2 * t)).astype(np.float32)
     warp = PictureWarp(mesh, img[box].astype(np.float32), start, freedom, np.ones_like(freedom), width, lines)
     ids = warp._drawn(mesh.px - start, mesh.camera.depth(mesh.vertices), np.zeros(len(mesh.px)))[0]
     interior = rim_cover(np.where(ids >= 0, mesh.labels[ids], NOTHING), lines) < 1
     return replace(warp, interior=interior.astype(np.float32))
+
+
+def _softened(image: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """An image (h, w, 3) whose pixels are mixed with their neighbours where the motion jumps: skin over skin."""
+    edge = np.zeros(motion.shape[:2], np.float32)
+    edge[:, 1:] = np.abs(np.diff(motion, axis=1)).max(2)
+    edge[1:] = np.maximum(edge[1:], np.abs(np.diff(motion, axis=0)).max(2))
+    if edge.max() < JUMP:
+        return image
+    share = cv2.GaussianBlur((edge > JUMP).astype(np.float32), (3, 3), 0)[..., None]
+    return np.asarray(image + np.minimum(2 * share, 1) * (cv2.GaussianBlur(image, (3, 3), 0) - image))
 
 
 def _remap(image: np.ndarray, px: np.ndarray, how: int) -> np.ndarray:

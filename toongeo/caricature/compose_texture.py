@@ -1,5 +1,6 @@
 """A texture of two: what stays, and what an expression puts in its place."""
 
+import cv2
 import numpy as np
 
 
@@ -36,7 +37,8 @@ def compose_texture(texture: np.ndarray, colour: np.ndarray, attention: np.ndarr
         raise ValueError(f"colour: expected the texture's shape {texture.shape}, got {colour.shape}")
     if attention.shape != texture.shape[:2]:
         raise ValueError(f"attention: expected shape {texture.shape[:2]} as the texture has, got {attention.shape}")
-    if not ((attention >= 0) & (attention <= 1)).all():
+    if not (attention.min() >= 0 and attention.max() <= 1):
         raise ValueError("attention: expected numbers in [0, 1], got others or NaN")
-    A = np.asarray(attention, np.float32)[..., None]
-    return np.asarray(A * texture + (1 - A) * colour, np.float32)  # Eq. 12
+    A = np.asarray(attention, np.float32)
+    C = np.asarray(colour, np.float32)
+    return np.asarray(C + cv2.merge([A, A, A]) * (texture - C))  # Eq. 12

@@ -4,19 +4,23 @@ import cv2
 import numpy as np
 
 from toongeo.caricature._atlas_raster import AtlasRaster
-from toongeo.caricature._lid_skin import lash_colour, lash_lines, lid_skin, lid_zones
+from toongeo.caricature._lid_skin import LINE, lash_colour, lash_lines, lid_skin, lid_zones
 from toongeo.caricature._mouth_palette import mouth_palette
 from toongeo.caricature._openings import lid_closing, lips_parted
 from toongeo.caricature._picture_mesh import INNER_PARTS
+from toongeo.caricature._picture_warp import Stroke
 from toongeo.caricature._shading_ratio import ShadingRatio
 from toongeo.caricature.attention_map import MAP_SIDE, attention_map
 from toongeo.geometry import vertex_normals
 from toongeo.model import MorphableModel
 from toongeo.pipeline import Rig
+from toongeo.pipeline.rig.lid_rings import lid_rings
 from toongeo.protocols import TextureGeometry
 from toongeo.render import sample_image, srgb_to_linear, uv_to_px
 
 OUTWARD, INWARD = 0.6, 0.35  # cosine to the front beyond which a lip is its red, and below which it is its inner side
+PLAIN = 60.0  # of 255: a colour that differs more from the skin's is a line's and says nothing about the light
+FAINT = 0.02  # less of a line is not seen
 INNER_LIP = 0.8  # of the lightness of the lips
 
 
@@ -52,7 +56,8 @@ class ClassicalTextureGenerator:
         skin = model.region("face") & ~model.region("lips") & ~eyes & ~brows & (normals[:, 2] > 0)
         lip = model.region("lips") & (normals[:, 2] > OUTWARD)
         linear = srgb_to_linear((colours / 255).astype(np.float32)).mean(1)
-        self._ratio = ShadingRatio(linear, V, model.faces, skin)
+        plain = skin & (np.abs(colours - np.median(colours[skin], axis=0)).max(1) < PLAIN)
+        self._ratio = ShadingRatio(linear, V, model.faces, plain)
         self._zones = lid_zones(model, rig)
         clean = lid_skin(model, colours, self._zones, skin)
         self._inner = np.any([model.region(name) for name in INNER_PARTS], axis=0)
@@ -64,9 +69,9 @@ class ClassicalTextureGenerator:
         self._fresh = (self._inner | inner_lip).astype(np.float32)
         raster = AtlasRaster(model.faces, model.uv, model.uv_faces, self.size)
         self._clean = raster.image(clean)
-        masks = raster.image(np.column_stack([*self._zones, self._fresh]))
-        self._zone_texels, self._fresh_texels = np.moveaxis(masks[..., :2], 2, 0), masks[..., 2:]
-        self._lashes = lash_lines(model, V, self.size)
+        masks = np.moveaxis(raster.image(np.column_stack([*self._zones, self._fresh])), 2, 0)
+        self._zone_texels, self._fresh_texels = [_boxed(mask) for mask in masks[:2]], _boxed(masks[2])
+        self._lashes = [_boxed(line) for line in lash_lines(model, V, self.size)]
         self._lash_colour = lash_colour(model, colours, skin).astype(np.float32)
         self._coarse = AtlasRaster(model.faces, model.uv, model.uv_faces, min(self.size, MAP_SIDE))
 
@@ -89,19 +94,30 @@ class ClassicalTextureGenerator:
         parted = lips_parted(self.model, geometry.target)
         attention = attention_map(geometry, self.size, extra=self._extra(closing, parted), raster=self._coarse)
         ratio = self._coarse.image(self._ratio(geometry.source, geometry.target)[:, None], empty=1.0)
-        ratio = cv2.GaussianBlur(ratio, (0, 0), 1.0)
-        ratio = cv2.resize(ratio, (self.size, self.size), interpolation=cv2.INTER_LINEAR)[..., None]
+        ratio = cv2.resize(cv2.GaussianBlur(ratio, (0, 0), 1.0), (self.size, self.size), interpolation=cv2.INTER_LINEAR)
+        ratio = cv2.merge([ratio, ratio, ratio])
         colour = texture * ratio
-        share = np.maximum(np.maximum(closing[0] * self._zone_texels[0], closing[1] * self._zone_texels[1])[..., None], parted * self._fresh_texels)
-        colour += share * (self._clean - colour)
-        lash = np.maximum(closing[0] * self._lashes[0], closing[1] * self._lashes[1])[..., None]
-        colour += lash * (self._lash_colour - colour)
+        for strength, (box, share) in zip((*closing, parted), (*self._zone_texels, self._fresh_texels), strict=True):
+            colour[box] += strength * share * (ratio[box] * self._clean[box] - colour[box])
+        for strength, (box, cover) in zip(closing, self._lashes, strict=True):
+            colour[box] += strength * cover * (self._lash_colour - colour[box])
         return np.clip(colour, 0, 255, out=colour), attention
 
     def renewed(self, geometry: TextureGeometry) -> np.ndarray:
-        """How far (n,) in [0, 1] a vertex shows what the source does not: skin of a closing lid, inside of a mouth."""
+        """How far (n,) in [0, 1] a vertex shows what the source does not: skin of a closing lid, inner lips."""
         closing = lid_closing(self.model, geometry.source, geometry.target)
-        return self._extra(closing, lips_parted(self.model, geometry.target))
+        parting = lips_parted(self.model, geometry.target) * (1 - lips_parted(self.model, geometry.source))
+        # Of teeth and tongue the picture may show some already.
+        return np.where(self._inner, 0, self._extra(closing, parting)).astype(np.float32)
+
+    def lash_strokes(self, geometry: TextureGeometry) -> list[Stroke]:
+        """The line along each lid that closes, for pictures, where it should be as sharp as the drawing's own."""
+        closing = lid_closing(self.model, geometry.source, geometry.target)
+        return [
+            Stroke(lid_rings(self.model, name).upper[2], self._lash_colour, LINE, float(strength))
+            for name, strength in zip(("left", "right"), closing, strict=True)
+            if strength > FAINT
+        ]
 
     def _extra(self, closing: np.ndarray, parted: float) -> np.ndarray:
         lids = np.maximum(closing[0] * self._zones[0], closing[1] * self._zones[1])
@@ -114,6 +130,15 @@ def _vertex_colours(model: MorphableModel, texture: np.ndarray) -> np.ndarray:
     at_corners = sample_image(texture, uv_to_px(model.uv, len(texture), len(texture)))
     colours[model.faces] = at_corners[model.uv_faces]
     return colours
+
+
+def _boxed(mask: np.ndarray) -> tuple[tuple[slice, slice], np.ndarray]:
+    """Rows and columns in which a mask (S, S) is not 0, and the mask there (h, w, 1)."""
+    rows, columns = np.flatnonzero(mask.any(1)), np.flatnonzero(mask.any(0))
+    if not len(rows):
+        return np.s_[:0, :0], np.zeros((0, 0, 1), np.float32)
+    box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    return box, np.ascontiguousarray(mask[box][..., None], np.float32)
 
 
 def _check_texture(texture: np.ndarray) -> None:
