@@ -3,7 +3,6 @@
 import zlib
 from collections.abc import Mapping
 
-import cv2
 import numpy as np
 
 from toongeo.avatar import Avatar, Weights
@@ -63,7 +62,9 @@ class ExpressionEditor:
         self.pose = np.r_[rig.pose if pose is None else weight_vector(pose, rig.names), self.avatar.eyes.pose]
         self._generator = generator or ClassicalTextureGenerator(face.model, rig, self.avatar.texture)
         self._mesh = picture_mesh(face, self.avatar.eyes)
-        points = np.where(np.isfinite(landmark_array(landmarks)), landmarks, face.project(face.vertices[face.landmark_vertices]))
+        points = np.where(
+            np.isfinite(landmark_array(landmarks)), landmarks, face.project(face.vertices[face.landmark_vertices])
+        )
         self._warp = picture_warp(img, points, self._mesh, self.avatar.parse)
 
     @property
@@ -86,7 +87,7 @@ class ExpressionEditor:
             weights = {name: w for name, w in weights.expression_weights().items() if name in rig.names}
         beta = rig.weights(weights)
         named = isinstance(weights, Mapping) and any(name in GAZE_NAMES for name in weights)
-        if not named and np.shape(weights) != beta.shape:
+        if not named and not (isinstance(weights, np.ndarray) and weights.shape == beta.shape):
             beta[len(rig.names) :] = self.pose[len(rig.names) :]
         return beta
 
@@ -121,7 +122,7 @@ class ExpressionEditor:
             the picture has been changed since the editor was made.
         """
         if _checksum(self._img) != self._checksum:
-            raise ValueError("img: expected the picture that was fitted, but it has been changed since; make a new editor")
+            raise ValueError("img: expected the picture that was fitted, got one that has been changed since")
         face, model, texture = self.avatar.face, self.avatar.face.model, self.avatar.texture
         beta = self.weights(weights)
         V = self.vertices(beta)
@@ -144,4 +145,4 @@ class ExpressionEditor:
 
 
 def _checksum(img: np.ndarray) -> int:
-    return zlib.crc32(np.ascontiguousarray(img))
+    return zlib.crc32(img.tobytes())

@@ -12,7 +12,8 @@ from toongeo.pipeline.texture.diffuse_over_mesh import diffuse_over_mesh
 from toongeo.render import uv_to_px
 
 STRETCHED = 1.2  # growth by which a blink spreads what is drawn beside the eye over the lid
-LEAST_UNLIKE, MOST_UNLIKE = 4.0, 16.0  # CIELAB: colours farther from the skin's are lines, brows, paint
+AROUND = 7  # edges: width of the ring of skin from which a lid takes its colour
+DARKER = 50.0  # percent of that skin, which lend nothing
 SOFTEN = 3  # passes over the border of the lid
 LINE = 0.045  # of the eye's width: thickness of a lash line
 FINE = 4  # subtexels a side for lines
@@ -31,33 +32,36 @@ def lid_zones(model: MorphableModel, rig: Rig) -> np.ndarray:
         zone = np.zeros(len(model.mean))
         zone[triangles[growth > STRETCHED]] = 1
         zone[lid_rings(model, name).upper] = 1
-        for _ in range(SOFTEN):
-            zone = np.maximum(zone, (edges @ zone) / degree)
-        zones[side] = 1 - (1 - zone) ** 2
+        core = np.minimum(edges @ zone, 1)
+        zone = core
+        for _ in range(2 * SOFTEN):
+            zone = np.maximum(core * (region | (zone > 0.5)), (edges @ zone) / degree)
+        zones[side] = zone
     return zones
 
 
-def lid_skin(model: MorphableModel, colours: np.ndarray, zones: np.ndarray, skin: np.ndarray) -> np.ndarray:
-    """Colours (n, 3) with those of the lids diffused from the skin around the eye; lines and brows lend nothing."""
-    lab = to_lab(colours)
-    away = np.linalg.norm(lab - np.median(lab[skin], axis=0), axis=1)
-    # In a flat drawing a little grey is already the edge of a line.
-    limit = np.clip(2.0 * np.median(away[skin]), LEAST_UNLIKE, MOST_UNLIKE)
-    eye = model.region("eye_left") | model.region("eye_right")
-    rims = np.zeros(len(lab), bool)
-    for name in ("left", "right"):
-        rims[lid_rings(model, name).vertices] = True
-    around = model.region("face") & ~rims & ~model.region("lips") & (~eye | (zones.max(0) > 0))
-    # Brows and lashes darken the skin beside them, which no lid should inherit.
-    plain = around & (away < limit) & (lab[:, 0] > np.median(lab[skin, 0]) - 0.5 * limit)
-    known = plain if plain.any() else around
-    outside = model.region("face")
-    triangles = model.faces[outside[model.faces].all(1)]
-    filled, _ = diffuse_over_mesh(triangles, np.asarray(colours, float), known)
+def lid_skin(model: MorphableModel, colours: np.ndarray, zones: np.ndarray) -> np.ndarray:
+    """Colours (n, 3) with those of the lids diffused from the skin around each eye.
+
+    Of that skin only the lighter part lends its colour: lines, brows and lashes, and what they darken, do not.
+    """
+    lightness = to_lab(colours)[:, 0]
+    triangles = model.faces[model.region("face")[model.faces].all(1)]
     edges = adjacency(triangles, len(colours)).astype(float)
     degree = np.maximum(np.asarray(edges.sum(1)).reshape(-1, 1), 1)
-    for _ in range(4 * SOFTEN):
-        filled = np.where((known & (zones.max(0) == 0))[:, None], filled, (edges @ filled) / degree)
+    sockets = model.region("socket_left") | model.region("socket_right")
+    filled = np.array(colours, float)
+    for zone, name in zip(zones, ("left", "right"), strict=True):
+        near = zone > 0
+        for _ in range(AROUND):
+            near = near | (edges @ near > 0)
+        rims = np.isin(np.arange(len(zone)), lid_rings(model, name).vertices)
+        ring = near & (zone < 0.5) & ~rims & ~sockets & model.region("face")
+        known = ring & (lightness >= np.percentile(lightness[ring], DARKER))
+        smooth, _ = diffuse_over_mesh(triangles, np.asarray(colours, float), known | ~near)
+        for _ in range(8 * SOFTEN):
+            smooth = np.where((known | ~near)[:, None], smooth, (edges @ smooth) / degree)
+        filled[near] = smooth[near]
     return np.asarray(filled, np.float32)
 
 

@@ -16,7 +16,9 @@ TONGUE_HUE = np.array([22.0, 10.0])  # a*, b* of a tongue beside those of skin, 
 TEETH = np.array([88.0, 0.5, 5.0])  # CIELAB
 
 
-def mouth_palette(model: MorphableModel, V: np.ndarray, colours: np.ndarray, lip: np.ndarray, skin: np.ndarray) -> np.ndarray:
+def mouth_palette(
+    model: MorphableModel, V: np.ndarray, colours: np.ndarray, lip: np.ndarray, skin: np.ndarray
+) -> np.ndarray:
     """Colours (n, 3), 0-255, of the inner parts of the mouth; those of other vertices are returned as they are.
 
     Region by region the mean colour is chosen from the drawing's own, and the spread about it from the drawing's

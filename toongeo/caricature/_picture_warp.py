@@ -70,9 +70,7 @@ class PictureWarp:
         x, y = self.corner
         return slice(y, y + rows), slice(x, x + columns)
 
-    def redrawn(
-        self, vertices: np.ndarray, texture: np.ndarray, change: np.ndarray, renewed: np.ndarray
-    ) -> np.ndarray:
+    def redrawn(self, vertices: np.ndarray, texture: np.ndarray, change: np.ndarray, renewed: np.ndarray) -> np.ndarray:
         """Colours (h, w, 3), 0-255, within :attr:`box`, with the mesh moved to ``vertices`` (n + e, 3).
 
         Parameters
@@ -97,7 +95,7 @@ class PictureWarp:
         outer = self._sampled(carried)
         rows = _bounds(ids >= 0)
         free = self.freedom[rows][..., None] * skin[rows][..., None]
-        painted, added = (cv2.remap(part, uv[rows], None, cv2.INTER_LINEAR) for part in (texture, change))
+        painted, added = (_remap(part, uv[rows], cv2.INTER_LINEAR) for part in (texture, change))
         blended = outer[rows] + added * share[rows]
         blended += (1 - share[rows]) * (painted - blended)
         outer[rows] += free * (blended - outer[rows])
@@ -131,7 +129,7 @@ class PictureWarp:
         return image
 
     def _eyes_completed(self, painted: np.ndarray, drawn: np.ndarray, eye: np.ndarray, trust: np.ndarray) -> np.ndarray:
-        """Colours of eyes where they come into view: those of what is seen of them beside it, farther off the texture's."""
+        """Colours of eyes where they come into view: those of what is seen beside it, farther off the texture's."""
         seen = eye & (trust > 0.99)
         if not seen.any():
             return painted
@@ -188,13 +186,13 @@ def picture_warp(img: np.ndarray, landmarks: np.ndarray, mesh: PictureMesh, pars
     start = np.clip(np.floor(low - REACH * width), 0, bounds - 1).astype(int)
     end = np.clip(np.ceil(high + REACH * width) + 1, start + 1, bounds).astype(int)
     box = slice(start[1], end[1]), slice(start[0], end[0])
-    fixed = parse.mask(FaceLabel.HAIR, FaceLabel.EARS)[box].astype(np.uint8)
     hull = cv2.convexHull(np.rint(landmarks - start).astype(np.int32))
-    amid = cv2.fillConvexPoly(np.zeros(fixed.shape, np.uint8), hull, 1)
-    # Specks are mistakes of the parse, and a beard or a moustache moves with the skin.
-    fixed = cv2.morphologyEx(fixed & (1 - amid), cv2.MORPH_OPEN, np.ones((3, 3), np.uint8))
-    # Pixels at the edge of hair have some of its colour.
-    fixed = cv2.dilate(fixed, np.ones((3, 3), np.uint8))
+    hair = parse.mask(FaceLabel.HAIR, FaceLabel.EARS)[box]
+    amid = cv2.fillConvexPoly(np.zeros(hair.shape, np.uint8), hull, 1)
+    # Specks are mistakes of the parse, a beard or a moustache moves with the skin, and the edge of hair is a mixture.
+    fixed = (hair & (np.asarray(amid) == 0)).astype(np.uint8)
+    fixed = np.asarray(cv2.morphologyEx(fixed, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)), np.uint8)
+    fixed = np.asarray(cv2.dilate(fixed, np.ones((3, 3), np.uint8)), np.uint8)
     # At the border of the box, unless it is that of the picture, all is at rest.
     frame = np.ones((fixed.shape[0] + 2, fixed.shape[1] + 2), np.uint8)
     frame[1:-1, 1:-1] = fixed
@@ -204,7 +202,10 @@ def picture_warp(img: np.ndarray, landmarks: np.ndarray, mesh: PictureMesh, pars
         frame[:, edge] = 0 if inside else 1
     away = cv2.distanceTransform(1 - frame, cv2.DIST_L2, 5)[1:-1, 1:-1]
     t = np.clip(away / (CALM * width), 0, 1)
-    mouth, eye = float(np.ptp(landmarks[48:60, 0])), max(float(np.ptp(landmarks[rows, 0])) for rows in (slice(36, 42), slice(42, 48)))
+    mouth, eye = (
+        float(np.ptp(landmarks[48:60, 0])),
+        max(float(np.ptp(landmarks[rows, 0])) for rows in (slice(36, 42), slice(42, 48))),
+    )
     lines = max(MOUTH_LINE * mouth, 1.0), max(EYE_LINE * eye, LEAST_LINE)
     freedom = (t * t * (3 - 2 * t)).astype(np.float32)
     warp = PictureWarp(mesh, img[box].astype(np.float32), start, freedom, np.ones_like(freedom), width, lines)
@@ -225,13 +226,13 @@ def _softened(image: np.ndarray, motion: np.ndarray) -> np.ndarray:
 
 
 def _remap(image: np.ndarray, px: np.ndarray, how: int) -> np.ndarray:
-    return np.asarray(cv2.remap(image, px, None, how, borderMode=cv2.BORDER_REPLICATE))
+    return np.asarray(cv2.remap(image, px[..., 0].copy(), px[..., 1].copy(), how, borderMode=cv2.BORDER_REPLICATE))
 
 
 def _texels(uv: np.ndarray, texture: np.ndarray) -> np.ndarray:
     """Texture coordinates (h, w, 2) as texels."""
     height, width = texture.shape[:2]
-    return np.asarray(uv * np.float32([width, -height]) + np.float32([-0.5, height - 0.5]), np.float32)
+    return np.asarray(uv * np.array([width, -height]) + np.array([-0.5, height - 0.5]), np.float32)
 
 
 def _bounds(mask: np.ndarray, margin: int = 0) -> tuple[slice, slice]:

@@ -6,7 +6,7 @@ from toongeo.geometry import vertex_normals
 from toongeo.geometry.one_thread import one_thread
 from toongeo.render import sh_basis
 
-RIDGE = 0.05  # on all but the ambient light, of the samples: a drawing without shading has none
+RIDGE = 0.01  # on all but the ambient light, of the samples: a drawing without shading has none
 LEAST, MOST = 0.6, 1.35  # of the ratio; nine harmonics of a drawn light say no more
 SH_MEAN = 0.282095  # the constant harmonic
 FLOOR = 0.25  # of the mean light: what lies in deeper shadow is not brightened from it

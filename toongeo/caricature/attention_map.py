@@ -55,7 +55,10 @@ def attention_map(
     if extra is not None:
         change = np.maximum(change, extra)
     raster = raster or AtlasRaster(geometry.faces, geometry.uv, geometry.uv_faces, min(size, MAP_SIDE))
-    image = cv2.GaussianBlur(raster.image(change[:, None])[..., 0], (0, 0), max(SMOOTH * raster.size, 0.3))
+    image = raster.image(np.column_stack([change, np.ones(n)]))
+    image = cv2.GaussianBlur(image, (0, 0), max(SMOOTH * raster.size, 0.3))
+    # Islands are smoothed within themselves: lids are thin beside the hole of the eye.
+    image = image[..., 0] / np.maximum(image[..., 1], 0.05)
     image = cv2.resize(image, (size, size), interpolation=cv2.INTER_LINEAR)
     return np.asarray(1 - np.clip(image, 0, 1), np.float32)
 

@@ -10,6 +10,7 @@ from toongeo.caricature._openings import lid_closing, lips_parted
 from toongeo.caricature._picture_mesh import INNER_PARTS
 from toongeo.caricature._picture_warp import Stroke
 from toongeo.caricature._shading_ratio import ShadingRatio
+from toongeo.caricature._spread_field import spread_field
 from toongeo.caricature.attention_map import MAP_SIDE, attention_map
 from toongeo.geometry import vertex_normals
 from toongeo.model import MorphableModel
@@ -20,6 +21,7 @@ from toongeo.render import sample_image, srgb_to_linear, uv_to_px
 
 OUTWARD, INWARD = 0.6, 0.35  # cosine to the front beyond which a lip is its red, and below which it is its inner side
 PLAIN = 60.0  # of 255: a colour that differs more from the skin's is a line's and says nothing about the light
+GRAIN, MOST_GRAIN = 0.006, 24.0  # s.d. of the atlas's side; of 255
 FAINT = 0.02  # less of a line is not seen
 INNER_LIP = 0.8  # of the lightness of the lips
 
@@ -59,7 +61,7 @@ class ClassicalTextureGenerator:
         plain = skin & (np.abs(colours - np.median(colours[skin], axis=0)).max(1) < PLAIN)
         self._ratio = ShadingRatio(linear, V, model.faces, plain)
         self._zones = lid_zones(model, rig)
-        clean = lid_skin(model, colours, self._zones, skin)
+        clean = lid_skin(model, colours, self._zones)
         self._inner = np.any([model.region(name) for name in INNER_PARTS], axis=0)
         inner_lip = model.region("lips") & (normals[:, 2] < INWARD) & ~self._inner
         for part in (model.region("lip_upper"), model.region("lip_lower")):
@@ -68,8 +70,12 @@ class ClassicalTextureGenerator:
         clean = mouth_palette(model, V, clean, lip, skin)
         self._fresh = (self._inner | inner_lip).astype(np.float32)
         raster = AtlasRaster(model.faces, model.uv, model.uv_faces, self.size)
-        self._clean = raster.image(clean)
-        masks = np.moveaxis(raster.image(np.column_stack([*self._zones, self._fresh])), 2, 0)
+        covered = np.zeros(self.size**2, bool)
+        covered[raster.texels] = True
+        self._clean = spread_field(raster.image(clean), covered.reshape(self.size, self.size))
+        masks = raster.image(np.column_stack([*self._zones, self._fresh]))
+        masks = np.moveaxis(spread_field(masks, covered.reshape(self.size, self.size)), 2, 0)
+        _add_grain(self._clean, texture, masks[:2])
         self._zone_texels, self._fresh_texels = [_boxed(mask) for mask in masks[:2]], _boxed(masks[2])
         self._lashes = [_boxed(line) for line in lash_lines(model, V, self.size)]
         self._lash_colour = lash_colour(model, colours, skin).astype(np.float32)
@@ -98,7 +104,8 @@ class ClassicalTextureGenerator:
         ratio = cv2.merge([ratio, ratio, ratio])
         colour = texture * ratio
         for strength, (box, share) in zip((*closing, parted), (*self._zone_texels, self._fresh_texels), strict=True):
-            colour[box] += strength * share * (ratio[box] * self._clean[box] - colour[box])
+            # Folded lids have normals that say little, so what is new is lit as it was matched.
+            colour[box] += strength * share * (self._clean[box] - colour[box])
         for strength, (box, cover) in zip(closing, self._lashes, strict=True):
             colour[box] += strength * cover * (self._lash_colour - colour[box])
         return np.clip(colour, 0, 255, out=colour), attention
@@ -130,6 +137,19 @@ def _vertex_colours(model: MorphableModel, texture: np.ndarray) -> np.ndarray:
     at_corners = sample_image(texture, uv_to_px(model.uv, len(texture), len(texture)))
     colours[model.faces] = at_corners[model.uv_faces]
     return colours
+
+
+def _add_grain(clean: np.ndarray, texture: np.ndarray, zones: np.ndarray) -> None:
+    """Give smooth lids, in place, the fine texture of the skin below the eye."""
+    pixels = texture.astype(np.float32)
+    detail = pixels - cv2.GaussianBlur(pixels, (0, 0), GRAIN * len(texture))
+    detail[np.abs(detail).max(2) > MOST_GRAIN] = 0  # lines are no grain
+    for zone in zones:
+        box, share = _boxed(zone)
+        height = share.shape[0]
+        below = slice(box[0].start + 2 * height, box[0].stop + 2 * height)
+        if height and below.stop <= len(texture):
+            clean[box] += share * detail[below, box[1]]
 
 
 def _boxed(mask: np.ndarray) -> tuple[tuple[slice, slice], np.ndarray]:
