@@ -9,7 +9,7 @@ from toongeo.pipeline.align.rim_anchors import rim_path
 from toongeo.pipeline.rig.lid_rings import lid_rings, opening_height
 
 CLOSED = 0.75  # of its height: an opening that has lost so much shows the lid of a closed eye
-PARTED = 0.06  # of the mouth's width: lips so far apart show the inside
+TOUCHING, PARTED = 0.035, 0.09  # of the mouth's width: lips so far apart still touch, and show the inside
 
 
 def lid_closing(model: MorphableModel, source: np.ndarray, target: np.ndarray) -> np.ndarray:
@@ -27,7 +27,8 @@ def lips_parted(model: MorphableModel, V: np.ndarray) -> float:
     """0 where the lips touch, 1 where they are parted enough to show the inside of the mouth."""
     upper, lower = inner_rims(model)
     width = float(np.linalg.norm(V[upper[0]] - V[upper[-1]]))
-    return float(np.clip(opening_height(V[upper], V[lower]) / max(PARTED * width, 1e-9), 0, 1))
+    apart = opening_height(V[upper], V[lower]) / max(width, 1e-9)
+    return float(np.clip((apart - TOUCHING) / (PARTED - TOUCHING), 0, 1))
 
 
 @lru_cache(maxsize=4)
