@@ -53,7 +53,7 @@ def main(paths: list[Path]) -> None:
     for path in paths:
         print(f"{path.stem:18s}", *_picture_row(path))
     print(
-        "\nexpression  attention (Eq. 13)  colour (Eq. 14)  no attention  source as it is  mouth: colour  source as it is"
+        "\nexpression  attention, Eq. 13  colour, Eq. 14  no attention  source as it is  mouth: colour  source as it is"
     )
     for row in _texture_rows():
         print(*row)
@@ -132,7 +132,7 @@ def _texture_rows() -> list[list[str]]:
         off = [np.abs(image - truth) for image in (made, colour, source)]
         numbers = np.abs(attention - motion)[skin].mean(), *(part[skin].mean() for part in off)
         numbers += off[0][mouth].mean(), off[2][mouth].mean()
-        rows.append([f"{name:10s}", f"{numbers[0]:19.4f}", *(f"{number:16.2f}" for number in numbers[1:])])
+        rows.append([f"{name:10s}", f"{numbers[0]:18.4f}", *(f"{number:15.2f}" for number in numbers[1:])])
     return rows
 
 

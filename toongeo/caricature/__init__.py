@@ -13,6 +13,7 @@ from toongeo.caricature.face_space import FaceSpace, face_space
 from toongeo.caricature.fit_caricature import fit_caricature
 from toongeo.caricature.linear_fit import linear_fit
 from toongeo.caricature.texture_generator import ClassicalTextureGenerator
+from toongeo.caricature.thin_plate_warp import thin_plate_warp
 
 __all__ = [
     "BilinearModel",
@@ -30,4 +31,5 @@ __all__ = [
     "face_space",
     "fit_caricature",
     "linear_fit",
+    "thin_plate_warp",
 ]
