@@ -90,7 +90,7 @@ class PictureWarp:
         motion, share = values[..., :2], values[..., 2:3]
         carried = spread_field(motion, skin)
         carried *= (self._falloff(skin | inner, carried) * self.freedom)[..., None]
-        carried[np.abs(carried).max(2) < STILL] = 0
+        carried *= (_largest(carried) >= STILL)[..., None]
         uv = _texels(values[..., 3:], texture)
         outer = self._sampled(carried)
         rows = _bounds(ids >= 0)
@@ -139,16 +139,22 @@ class PictureWarp:
 
     def _drawn(self, px: np.ndarray, depth: np.ndarray, renewed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Triangle (h, w) at every pixel, -1 where none, and (h, w, 5): motion back to the picture, share, uv."""
-        mesh, (height, width) = self.mesh, self.freedom.shape
-        fragments = rasterize(np.column_stack([px, depth]), mesh.faces, height, width)
+        mesh, bounds = self.mesh, np.array(self.freedom.shape[::-1])
+        used = px[mesh.faces.ravel()]
+        low = np.clip(np.floor(used.min(0)), 0, bounds - 1).astype(int)
+        width, height = np.clip(np.ceil(used.max(0)) + 1, low + 1, bounds).astype(int) - low
+        fragments = rasterize(np.column_stack([px - low, depth]), mesh.faces, height, width)
         covered = np.flatnonzero(fragments.face_ids.ravel() >= 0)
         ids = fragments.face_ids.ravel()[covered]
         back = mesh.px - self.corner - px
         at_vertices = np.column_stack([back, mesh.shares(px + self.corner) * (1 - renewed)]).astype(np.float32)
         corners = np.concatenate([at_vertices[mesh.faces], mesh.uv], axis=2)
-        values = np.zeros((height * width, 5), np.float32)
-        values[covered] = blend_corners(corners, ids, fragments.barycentrics.reshape(-1, 3)[covered])
-        return fragments.face_ids, values.reshape(height, width, 5)
+        inside = np.zeros((height * width, 5), np.float32)
+        inside[covered] = blend_corners(corners, ids, fragments.barycentrics.reshape(-1, 3)[covered])
+        box = slice(low[1], low[1] + height), slice(low[0], low[0] + width)
+        face_ids, values = np.full(self.freedom.shape, -1), np.zeros((*self.freedom.shape, 5), np.float32)
+        face_ids[box], values[box] = fragments.face_ids, inside.reshape(height, width, 5)
+        return face_ids, values
 
     def _sampled(
         self, motion: np.ndarray, image: np.ndarray | None = None, rows: tuple[slice, slice] = np.s_[:, :]
@@ -163,7 +169,7 @@ class PictureWarp:
     def _falloff(self, face: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """1 (h, w) on the face, falling to 0 around it over a distance in which the motion cannot fold."""
         away = cv2.distanceTransform((~face).astype(np.uint8), cv2.DIST_L2, 5)
-        most = float(np.abs(motion[face]).max(initial=0))
+        most = float(_largest(motion)[face].max(initial=0))
         t = np.clip(1 - away / max(FALLOFF * most, LEAST_FALLOFF * self.width), 0, 1)
         return np.asarray(t * t * (3 - 2 * t))
 
@@ -215,14 +221,21 @@ def picture_warp(img: np.ndarray, landmarks: np.ndarray, mesh: PictureMesh, pars
 
 
 def _softened(image: np.ndarray, motion: np.ndarray) -> np.ndarray:
-    """An image (h, w, 3) whose pixels are mixed with their neighbours where the motion jumps: skin over skin."""
+    """An image (h, w, 3), changed in place: pixels are mixed with their neighbours where the motion jumps."""
     edge = np.zeros(motion.shape[:2], np.float32)
-    edge[:, 1:] = np.abs(np.diff(motion, axis=1)).max(2)
-    edge[1:] = np.maximum(edge[1:], np.abs(np.diff(motion, axis=0)).max(2))
+    edge[:, 1:] = _largest(motion[:, 1:] - motion[:, :-1])
+    edge[1:] = np.maximum(edge[1:], _largest(motion[1:] - motion[:-1]))
     if edge.max() < JUMP:
         return image
-    share = cv2.GaussianBlur((edge > JUMP).astype(np.float32), (3, 3), 0)[..., None]
-    return np.asarray(image + np.minimum(2 * share, 1) * (cv2.GaussianBlur(image, (3, 3), 0) - image))
+    box = _bounds(edge > JUMP, margin=2)
+    share = np.minimum(2 * cv2.GaussianBlur((edge[box] > JUMP).astype(np.float32), (3, 3), 0), 1)[..., None]
+    image[box] += share * (cv2.GaussianBlur(image[box], (3, 3), 0) - image[box])
+    return image
+
+
+def _largest(motion: np.ndarray) -> np.ndarray:
+    """Larger component (h, w) of a motion (h, w, 2), without its sign."""
+    return np.maximum(np.abs(motion[..., 0]), np.abs(motion[..., 1]))
 
 
 def _remap(image: np.ndarray, px: np.ndarray, how: int) -> np.ndarray:
@@ -232,7 +245,7 @@ def _remap(image: np.ndarray, px: np.ndarray, how: int) -> np.ndarray:
 def _texels(uv: np.ndarray, texture: np.ndarray) -> np.ndarray:
     """Texture coordinates (h, w, 2) as texels."""
     height, width = texture.shape[:2]
-    return np.asarray(uv * np.array([width, -height]) + np.array([-0.5, height - 0.5]), np.float32)
+    return np.asarray(uv * np.array([width, -height], np.float32) + np.array([-0.5, height - 0.5], np.float32))
 
 
 def _bounds(mask: np.ndarray, margin: int = 0) -> tuple[slice, slice]:

@@ -26,7 +26,7 @@ def spread_field(field: np.ndarray, known: np.ndarray) -> np.ndarray:
     True
     """
     weight = known.astype(np.float32)
-    levels = [(np.where(known[..., None], field, 0).astype(np.float32), weight)]
+    levels = [(np.asarray(field * weight[..., None], np.float32), weight)]
     while min(levels[-1][1].shape) > 1 and levels[-1][1].min() < 1:
         total, count = (_halved(part) for part in levels[-1])
         levels.append((_channels(total), count))

@@ -31,7 +31,7 @@ def thin_plate_warp(img: np.ndarray, source: np.ndarray, target: np.ndarray) -> 
     Examples
     --------
     >>> img = np.zeros((40, 40, 3), np.uint8)
-    >>> img[20, 20] = 255
+    >>> img[19:22, 19:22] = 255
     >>> moved = thin_plate_warp(img, np.array([[20.0, 20.0]]), np.array([[23.0, 20.0]]))
     >>> int(moved[20, 23, 0]), int(moved[20, 20, 0])
     (255, 0)
