@@ -100,5 +100,12 @@ __getattr__, __dir__, __all__ = attach(
         "optimize_blendshapes": "caricature",
         "weights_of_expression": "caricature",
         "LandmarkMapper": "protocols",
+        "edit_expression": "edit_expression",
+        "ExpressionEditor": "expression_editor",
+        "ClassicalTextureGenerator": "caricature",
+        "TextureGenerator": "protocols",
+        "TextureGeometry": "protocols",
+        "attention_map": "caricature",
+        "compose_texture": "caricature",
     },
 )

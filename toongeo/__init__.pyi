@@ -4,11 +4,14 @@ from toongeo.avatar import Avatar as Avatar
 from toongeo.caricature import BlendshapeWeights as BlendshapeWeights
 from toongeo.caricature import CaricatureFit as CaricatureFit
 from toongeo.caricature import CaricatureOptions as CaricatureOptions
+from toongeo.caricature import ClassicalTextureGenerator as ClassicalTextureGenerator
 from toongeo.caricature import DeformationSpace as DeformationSpace
 from toongeo.caricature import FaceSpace as FaceSpace
 from toongeo.caricature import PartMapper as PartMapper
+from toongeo.caricature import attention_map as attention_map
 from toongeo.caricature import caricature_rig as caricature_rig
 from toongeo.caricature import caricature_surface as caricature_surface
+from toongeo.caricature import compose_texture as compose_texture
 from toongeo.caricature import exaggerate as exaggerate
 from toongeo.caricature import face_space as face_space
 from toongeo.caricature import fit_caricature as fit_caricature
@@ -19,6 +22,8 @@ from toongeo.driving import ArkitDriver as ArkitDriver
 from toongeo.driving import LandmarkDriver as LandmarkDriver
 from toongeo.driving import Take as Take
 from toongeo.driving import send_weights as send_weights
+from toongeo.edit_expression import edit_expression as edit_expression
+from toongeo.expression_editor import ExpressionEditor as ExpressionEditor
 from toongeo.geometry import DeformationTransfer as DeformationTransfer
 from toongeo.geometry import LaplacianAligner as LaplacianAligner
 from toongeo.geometry import RegisteredMesh as RegisteredMesh
@@ -69,6 +74,8 @@ from toongeo.protocols import ExpressionDriver as ExpressionDriver
 from toongeo.protocols import FaceLabel as FaceLabel
 from toongeo.protocols import FaceParse as FaceParse
 from toongeo.protocols import LandmarkMapper as LandmarkMapper
+from toongeo.protocols import TextureGenerator as TextureGenerator
+from toongeo.protocols import TextureGeometry as TextureGeometry
 from toongeo.render import PerspectiveCamera as PerspectiveCamera
 from toongeo.render import ScaledOrthographicCamera as ScaledOrthographicCamera
 from toongeo.render import render_mesh as render_mesh
