@@ -1,5 +1,6 @@
 """The expression of a picture, edited again and again."""
 
+import dataclasses
 import zlib
 from collections.abc import Mapping
 
@@ -11,7 +12,7 @@ from toongeo.caricature._picture_mesh import picture_mesh
 from toongeo.caricature._picture_warp import Stroke, picture_warp
 from toongeo.io import check_image, landmark_array
 from toongeo.make_avatar import make_avatar
-from toongeo.pipeline import FaceFit
+from toongeo.pipeline import AlignedFace, FaceFit, Rig, build_rig, fit_lids
 from toongeo.pipeline.rig.fit_eyes import SIDES
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.weight_vector import weight_vector
@@ -58,7 +59,9 @@ class ExpressionEditor:
         check_image(img)
         self.avatar = avatar or make_avatar(img, landmarks, texture_size=TEXTURE_SIZE)
         face, rig = self.avatar.face, self.avatar.rig
-        self._img, self._checksum = img, _checksum(img)
+        if pose is not None:
+            rig = _rig_at_rest(face, rig, weight_vector(pose, rig.names))
+        self._rig, self._img, self._checksum = rig, img, _checksum(img)
         self.pose = np.r_[rig.pose if pose is None else weight_vector(pose, rig.names), self.avatar.eyes.pose]
         self._generator = generator or ClassicalTextureGenerator(face.model, rig, self.avatar.texture)
         self._mesh = picture_mesh(face, self.avatar.eyes)
@@ -93,7 +96,7 @@ class ExpressionEditor:
 
     def vertices(self, weights: Weights | FaceFit) -> np.ndarray:
         """Vertices (n, 3), mm, of the head in an expression: the picture's face, moved by the difference of weights."""
-        rig = self.avatar.rig
+        rig = self._rig
         return self.avatar.face.vertices + (rig.vertices(self.weights(weights) - self.pose) - rig.neutral)
 
     def landmarks(self, weights: Weights | FaceFit) -> np.ndarray:
@@ -142,6 +145,16 @@ class ExpressionEditor:
         drawn = np.where(self._warp.freedom[..., None] > 0, drawn, self._warp.picture)
         out[self._warp.box] = np.clip(np.rint(drawn), 0, 255).astype(np.uint8)
         return out
+
+
+def _rig_at_rest(face: AlignedFace, rig: Rig, pose: np.ndarray) -> Rig:
+    """Blendshapes of the face without its known expression: those built on a smile would be another's at rest."""
+    added = pose - rig.pose
+    if not added.any():
+        return rig
+    at_rest = dataclasses.replace(face, vertices=face.vertices - np.tensordot(added, rig.deltas, 1))
+    rig, _ = fit_lids(at_rest, build_rig(at_rest))
+    return rig
 
 
 def _checksum(img: np.ndarray) -> int:
