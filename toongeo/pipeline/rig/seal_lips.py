@@ -27,10 +27,9 @@ def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
     are 0.4 % of the mouth's width apart, also when the neutral mouth is open. ``mouthPucker`` (of closed lips, by its
     definition in ARKit; the template's leaves them apart) seals them alike, without the jaw. In every other expression
     at 1 no point of a lip comes closer to the other lip, seen from the front, than twice this or than it was in the
-    neutral face;
-    where one does both give way, half each. So they do in a neutral face whose lips cross more than those of the
-    aligned one, or by more than points that are set by hand do. The face around follows as a thin plate, and what
-    lies farther away stays.
+    neutral face; where one does both give way, half each. So they do in a neutral face whose lips cross more than those
+    of the aligned one, or by more than points that are set by hand do. The face around follows as a thin plate, and
+    what lies farther away stays.
 
     Parameters
     ----------
