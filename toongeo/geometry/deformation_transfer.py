@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -10,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from toongeo.geometry._components import components
 from toongeo.geometry._factor import factor_spd, solve
 from toongeo.geometry._rigid_rotation import rigid_rotation
-from toongeo.geometry._transfer_operators import fourth_edges, transfer_operators
+from toongeo.geometry._source_motion import SourceMotion, source_motion
+from toongeo.geometry._transfer_operators import transfer_operators
 from toongeo.geometry.validate_mesh import validate_mesh
 
 __all__ = ["DeformationTransfer", "deformation_transfer"]
@@ -132,7 +134,6 @@ class DeformationTransfer:
         if len(self._target) != n:
             raise ValueError(f"V_target: expected {n} vertices as V_source has, got {len(self._target)}")
         self._corners = np.ascontiguousarray(faces.T)
-        self._rest_normals = fourth_edges(self._source, self._corners)
         self._rotation = rigid_rotation(self._source, self._target) if align else np.eye(3)
 
         turned = self._source @ self._rotation.T
@@ -184,24 +185,29 @@ class DeformationTransfer:
 
     __call__ = transfer
 
-    def _transfer_one(self, shape: NDArray[np.float64]) -> NDArray[np.float64]:
-        moved = shape - self._source
-        # Displacements are solved for: no deformation then gives the target to the last bit.
-        displacement = np.zeros_like(moved)
+    def displacements(self, motions: Sequence[SourceMotion]) -> NDArray[np.float64]:
+        """How the target moves (k, n, 3) in motions of the source that were prepared once for many targets."""
+        count, n = len(motions), len(self._source)
+        result = np.zeros((count, n, 3))
         if self._factor is not None:
-            right = self._from_vertices @ moved + self._from_normals @ self._tilted(shape, moved)
-            displacement[self._free] = solve(self._factor, right @ self._rotation.T)
+            right = np.hstack([self._right_side(motion) for motion in motions])
+            result[:, self._free] = solve(self._factor, right).reshape(-1, count, 3).swapaxes(0, 1)
         offset = np.zeros((self._n_components, 3))
-        offset[self._placed] = moved[self._placed_by] @ self._rotation.T
-        return self._target + displacement + offset[self._component]
+        for motion, displacement in zip(motions, result, strict=True):
+            offset[self._placed] = motion.moved[self._placed_by] @ self._rotation.T
+            displacement += offset[self._component]
+        return result
 
-    def _tilted(self, shape: NDArray[np.float64], moved: NDArray[np.float64]) -> NDArray[np.float64]:
-        """How far the fourth vertices move from the first; most expressions leave most triangles as they are."""
-        touched = np.flatnonzero((moved != 0).any(axis=1)[self._corners].any(axis=0))
-        corners = np.ascontiguousarray(self._corners[:, touched])
-        tilted = np.zeros_like(self._rest_normals)
-        tilted[touched] = fourth_edges(np.asarray(shape, np.float64), corners) - self._rest_normals[touched]
-        return tilted
+    def _transfer_one(self, shape: NDArray[np.float64]) -> NDArray[np.float64]:
+        # Displacements are solved for: no deformation then gives the target to the last bit.
+        motion = source_motion(self._source, self._corners, np.asarray(shape, np.float64) - self._source)
+        return np.asarray(self._target + self.displacements([motion])[0])
+
+    def _right_side(self, motion: SourceMotion) -> NDArray[np.float64]:
+        tilted = np.zeros((self._corners.shape[1], 3))
+        tilted[motion.touched] = motion.tilted
+        right = self._from_vertices @ motion.moved.astype(np.float64) + self._from_normals @ tilted
+        return np.asarray(right @ self._rotation.T)
 
 
 def _checked_pins(pinned: ArrayLike | None, n: int) -> NDArray[np.int64]:

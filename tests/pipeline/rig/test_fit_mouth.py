@@ -6,6 +6,7 @@ from scipy.spatial import cKDTree
 
 from tests.conftest import CARTOONS
 from toongeo.metrics import mesh_quality
+from toongeo.model.expression_weights import preset
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_mouth
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
 from toongeo.pipeline.rig.close_slit import close_slit
@@ -62,6 +63,15 @@ def test_mouth_close_seals_the_lips_of_an_open_jaw(stages):
     gap = max(cKDTree(upper).query(lower)[0].max(), cKDTree(lower).query(upper)[0].max())
     assert gap < 0.01 * width(face.model, V)
     assert rig.report["lips_closure"] > 99
+
+
+@pytest.mark.parametrize("weights", [{"mouthPucker": 1.0}, preset("kiss")])
+def test_a_kiss_is_one_of_closed_lips(stages, weights):
+    face, _, rig = stages
+    line, V = lip_line(face.model), rig.vertices(weights)
+    upper, lower = dense(V[line.upper]), dense(V[line.lower])
+    gap = max(cKDTree(upper).query(lower)[0].max(), cKDTree(lower).query(upper)[0].max())
+    assert gap < 0.02 * width(face.model, V)
 
 
 def test_sealed_lips_are_as_far_apart_as_told_where_they_are_paired(stages):

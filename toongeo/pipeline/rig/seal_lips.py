@@ -20,15 +20,16 @@ ROUNDS = 2  # shifted lips lie elsewhere along each other; the second round sees
 
 
 def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
-    """Make the lips meet in ``mouthClose``, and keep them from crossing in the other expressions.
+    """Make the lips meet in ``mouthClose`` and ``mouthPucker``, and keep them from crossing in the others.
 
     Deformation transfer keeps rotations and stretches, not contacts. ``mouthClose``, a corrective of ``jawOpen``, is
     given the motion that brings the lines where the lips end together, all along: at 1, with ``jawOpen`` at 1, they
-    are 0.4 % of the mouth's width apart, also when the neutral mouth is open. In every other expression at 1 no point
-    of a lip comes closer to the other lip, seen from the front, than twice this or than it was in the neutral face;
-    where one does both give way, half each. So they do in a neutral face whose lips cross more than those of the
-    aligned one, or by more than points that are set by hand do. The face around follows as a thin plate, and what
-    lies farther away stays.
+    are 0.4 % of the mouth's width apart, also when the neutral mouth is open. ``mouthPucker`` (of closed lips, by its
+    definition in ARKit; the template's leaves them apart) seals them alike, without the jaw. In every other expression
+    at 1 no point of a lip comes closer to the other lip, seen from the front, than twice this or than it was in the
+    neutral face; where one does both give way, half each. So they do in a neutral face whose lips cross more than those
+    of the aligned one, or by more than points that are set by hand do. The face around follows as a thin plate, and
+    what lies farther away stays.
 
     Parameters
     ----------
@@ -48,11 +49,12 @@ def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
     drawn = [np.maximum(heights, crossed) for heights in _heights(line, face.vertices, up)]
     neutral[line.follows] += line.spread @ _parting(line, neutral, up, drawn)
     at_rest = _heights(line, neutral, up)
-    close, jaw = (rig.names.index(name) for name in ("mouthClose", "jawOpen"))
+    close, jaw, pucker = (rig.names.index(name) for name in ("mouthClose", "jawOpen", "mouthPucker"))
     moves = np.abs(deltas[:, line.vertices]).max((1, 2)) > MOVES_MM
-    moves[close] = False
+    moves[[close, pucker]] = False
     for k in np.flatnonzero(moves):
         deltas[k, line.follows] += line.spread @ _parting(line, neutral + deltas[k], up, at_rest)
+    deltas[pucker, line.follows] += line.spread @ _sealing(line, neutral + deltas[pucker], up)
     opened = neutral + deltas[jaw]
     deltas[close, line.follows] += line.spread @ _sealing(line, opened + deltas[close], up)
     gaps = [_gap(line, V) for V in (opened, opened + deltas[close])]
