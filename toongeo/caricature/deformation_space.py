@@ -283,5 +283,5 @@ class DeformationSpace:
         ValueError
             If it holds something else.
         """
-        reference, faces, *fields = read_arrays(path, _STORED).values()
-        return cls(reference, faces, *fields)
+        reference, faces, rotations, stretches, bends, offsets = read_arrays(path, _STORED).values()
+        return cls(reference, faces, rotations, stretches, bends, offsets)
