@@ -56,7 +56,13 @@ def rival() -> None:
     full, rng = face_space().space, np.random.default_rng(0)
     kept = slice(0, SMALL)
     small = DeformationSpace(
-        full.reference, full.faces, full.rotations[kept], full.stretches[kept], full.offsets[kept], full.rings
+        full.reference,
+        full.faces,
+        full.rotations[kept],
+        full.stretches[kept],
+        full.bends[kept],
+        full.offsets[kept],
+        full.rings,
     )
     P = small.vertices(rng.normal(size=(2, SMALL)))
     started = time.process_time()

@@ -9,7 +9,7 @@ from toongeo.geometry.one_rings import OneRings
 from toongeo.geometry.polar_decomposition import polar_decomposition
 from toongeo.geometry.rotation_log import rotation_log
 
-__all__ = ["deformation_representation", "full", "packed"]
+__all__ = ["deformation_representation", "full", "packed", "rotation_and_stretch"]
 
 Floats = NDArray[np.float64]
 
@@ -40,9 +40,14 @@ def deformation_representation(rings: OneRings, P: Floats) -> tuple[Floats, Floa
     ----------
     Wu et al. 2018, "Alive caricature from 2D to 3D", Eq. 2-3.
     """
-    T = rings.displacement_gradients(P)
+    return rotation_and_stretch(rings.displacement_gradients(P), rings.normal)
+
+
+def rotation_and_stretch(gradients: Floats, normal: Floats) -> tuple[Floats, Floats]:
+    """Rotation vectors (3, n) and six numbers of ``S - I`` (6, n) of ``T - I`` (3, 3, n), by polar decomposition."""
+    T = gradients.copy()
     T[[0, 1, 2], [0, 1, 2]] += 1.0
-    R, S = polar_decomposition(T, rings.normal)
+    R, S = polar_decomposition(T, normal)
     S[[0, 1, 2], [0, 1, 2]] -= 1.0
     return rotation_log(R), packed(S)
 

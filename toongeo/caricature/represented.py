@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.caricature.deformation_representation import deformation_representation
+from toongeo.caricature.deformation_representation import rotation_and_stretch
 from toongeo.geometry import validate_mesh, vertex_components
 from toongeo.geometry.one_rings import OneRings, one_rings
 from toongeo.geometry.one_thread import one_thread
@@ -21,8 +21,8 @@ Singles = NDArray[np.float32]
 
 def represented(
     V: ArrayLike, F: ArrayLike, shapes: Sequence[ArrayLike] | NDArray, *, align: bool
-) -> tuple[Floats, NDArray[np.int64], Singles, Singles, Floats, OneRings]:
-    """Reference, triangles, rotations, stretches, offsets and rings of `DeformationSpace`, from its `from_meshes`."""
+) -> tuple[Floats, NDArray[np.int64], Singles, Singles, Singles, Floats, OneRings]:
+    """Reference, triangles, rotations, stretches, bends, offsets and rings of `DeformationSpace.from_meshes`."""
     V, F = validate_mesh(V, F, names=("V_ref", "F"))
     if len(shapes) < 2:
         raise ValueError(f"shapes: expected at least 2, got {len(shapes)}")
@@ -34,12 +34,15 @@ def represented(
     component = vertex_components(F, len(V))
     rotations = np.empty((len(checked), 3, len(V)), np.float32)
     stretches = np.empty((len(checked), 6, len(V)), np.float32)
+    bends = np.empty((len(checked), len(V), 3), np.float32)
     offsets = np.empty((len(checked), int(component.max()) + 1, 3))
     for k, shape in enumerate(checked):
         moved = _rigidly_aligned(shape, V) if align else shape
-        rotations[k], stretches[k] = deformation_representation(rings, moved)
+        gradients = rings.displacement_gradients(moved)
+        bends[k] = rings.laplacian @ (moved - V) - 0.5 * rings.spread(gradients)
+        rotations[k], stretches[k] = rotation_and_stretch(gradients, rings.normal)
         offsets[k] = component_means(moved - V, component)
-    return V, F, rotations, stretches, offsets, rings
+    return V, F, rotations, stretches, bends, offsets, rings
 
 
 def component_means(x: Floats, component: NDArray[np.int64]) -> Floats:
