@@ -12,7 +12,7 @@ from toongeo.caricature._picture_mesh import picture_mesh
 from toongeo.caricature._picture_warp import Stroke, picture_warp
 from toongeo.io import check_image, landmark_array
 from toongeo.make_avatar import make_avatar
-from toongeo.pipeline import AlignedFace, FaceFit, Rig, build_rig, fit_lids
+from toongeo.pipeline import AlignedFace, FaceFit, Rig, build_rig, fit_lids, fit_mouth
 from toongeo.pipeline.rig.fit_eyes import SIDES
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.weight_vector import weight_vector
@@ -153,7 +153,7 @@ def _rig_at_rest(face: AlignedFace, rig: Rig, pose: np.ndarray) -> Rig:
     if not added.any():
         return rig
     at_rest = dataclasses.replace(face, vertices=face.vertices - np.tensordot(added, rig.deltas, 1))
-    rig, _ = fit_lids(at_rest, build_rig(at_rest))
+    rig, _ = fit_lids(at_rest, fit_mouth(at_rest, build_rig(at_rest)))
     return rig
 
 
