@@ -159,6 +159,7 @@ class Avatar:
         ================  ================================================================================
         ``.glb``          options ``crop quantize normals texture animation names sparse loadable``
         ``.vrm``          VRM 1.0 with a body of bones alone; ``crop normals texture meta``
+        ``.html``         a page with sliders that needs no network; ``crop quantize texture animation title``
         ``.usdz``         with blend shapes, needs the extra ``usd``; ``crop names``
         ``.obj``          with ``.mtl`` and ``.png`` beside it; ``crop``
         ``.ply``          with uv, and colours at the vertices; ``crop``
@@ -174,7 +175,7 @@ class Avatar:
         crop : {"head", "bust", "face"}
             "head" and "bust" are all that the template has; "face" is the front of the face with eyes and teeth.
         quantize : bool
-            Displacements as integers: half the size, expressions off by less than 0.1 mm.
+            Displacements as integers: half the size, expressions off by less than 0.1 mm. A page does so by default.
         normals : bool
             Whether expressions bend the normals too: smoother shading in viewers that do not compute them, and a file
             half as big again.
@@ -193,6 +194,8 @@ class Avatar:
             parsed (some hundred kB). A file with another crop or other names never is.
         meta : toongeo.io.VrmMeta
             Name, authors and licence; by default nothing is allowed to others.
+        title : str
+            Of the page; by default the file's name without its suffix.
 
         Raises
         ------

@@ -41,7 +41,9 @@ def _parser() -> argparse.ArgumentParser:
     make = commands.add_parser("make", help="turn a picture and its landmarks into an avatar")
     make.add_argument("image", type=Path, metavar="IMAGE")
     make.add_argument("--landmarks", type=Path, required=True, metavar="FILE", help=".pts, .npy, .csv or .txt")
-    make.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, .vrm, .usdz, .obj, .ply")
+    make.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, .vrm, .html, .usdz, .obj, .ply"
+    )
     make.add_argument("--texture-size", type=int, default=1024, metavar="N", help="side of the atlas (default 1024)")
     make.add_argument("--crop", choices=("head", "bust", "face"), default="head", help="what to write (default head)")
     make.add_argument("--format", choices=("obj-sequence",), help="OUT is a folder of an .obj an expression")

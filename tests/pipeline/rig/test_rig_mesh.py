@@ -158,8 +158,8 @@ def test_a_lash_moves_as_the_lid_it_grows_on():
         ({"landmarks": np.full((68, 3), np.nan)}, "landmarks: expected at least 12 of the points 17-67, got 0"),
         ({"landmarks": np.full((68, 2), 1.0)}, r"landmarks: expected vertex indices \(k,\) or points \(k, 3\)"),
         ({"landmarks": np.full((68, 3), np.inf)}, "landmarks: expected finite coordinates or NaN"),
+        ({"landmarks": np.zeros(68, int)}, "landmarks: expected the points of a face, got one place for all"),
         ({"landmarks": np.arange(68) * 250}, "landmarks: expected the points of a face in the order of iBUG-68"),
-        ({"landmarks": np.zeros(68, int)}, "landmarks: expected the points of a face in the order of iBUG-68"),
     ],
 )
 def test_bad_input_is_named(model, change, message):

@@ -127,10 +127,10 @@ def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike, model: M
     inner = INNER[given[INNER]]
     own, found = model.mean[model.landmarks[inner]], points[inner]
     spread = np.sqrt(((found - found.mean(0)) ** 2).sum(1).mean())
-    misfit = np.inf
-    if spread > 0:
-        scale, rotation, shift = similarity(own, found)
-        misfit = np.sqrt(((found - scale * own @ rotation.T - shift) ** 2).sum(1).mean()) / spread
+    if not spread > 0:
+        raise ValueError("landmarks: expected the points of a face, got one place for all")
+    scale, rotation, shift = similarity(own, found)
+    misfit = np.sqrt(((found - scale * own @ rotation.T - shift) ** 2).sum(1).mean()) / spread
     if not misfit <= LIKENESS:
         raise ValueError(
             f"landmarks: expected the points of a face in the order of iBUG-68, got ones that are off by "
