@@ -102,14 +102,15 @@ def row(picture: Path) -> list[object]:
 def main() -> None:
     folders = [Path(arg) for arg in sys.argv[1:]] or [PORTRAITS]
     print(
-        f"{'':<26} shows   gap mean  max  inside half neutral crossing closed   lids    mouth  transfer  worst expression"
+        f"{'':<26} shows   gap mean  max  inside half neutral crossing closed   lids    mouth  transfer"
+        "  worst expression"
     )
     for folder in folders:
         for picture in sorted(p for kind in ("png", "jpg") for p in folder.glob(f"*.{kind}")):
             shown, mean, most, within, half, gained, excess, closed, *seconds, name = row(picture)
             print(
-                f"{picture.stem:<26} {shown:5.2f}   {mean:8.1f} {most:4.1f}  {within:6d} {half:4d} {gained:+7d} {excess:8d}"
-                f" {closed:6.1f}  {seconds[0]:5.2f} s {seconds[1]:5.2f} s {seconds[2]:6.2f} s  {name}",
+                f"{picture.stem:<26} {shown:5.2f}   {mean:8.1f} {most:4.1f}  {within:6d} {half:4d} {gained:+7d}"
+                f" {excess:8d} {closed:6.1f}  {seconds[0]:5.2f} s {seconds[1]:5.2f} s {seconds[2]:6.2f} s  {name}",
                 flush=True,
             )
 

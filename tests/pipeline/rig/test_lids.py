@@ -8,6 +8,8 @@ from toongeo.metrics import mesh_quality
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_lids
 from toongeo.pipeline.align.carry_inner_parts import opening_rim
 from toongeo.pipeline.align.rim_anchors import rim_path
+from toongeo.pipeline.rig.crossing_triangles import crossing_all, smoothed_ways
+from toongeo.pipeline.rig.eye_patch import eye_patch
 from toongeo.pipeline.rig.fit_eyes import SIDES
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.lid_closure import lid_closure
@@ -105,6 +107,43 @@ def test_expressions_do_not_make_the_skin_intersect_itself(stages):
     allowed = len(mesh_quality(rig.neutral, F).intersecting) + 0.001 * len(F)
     for name in (f"{name}{side}" for name in AROUND for side in ("Left", "Right")):
         assert len(mesh_quality(rig.vertices({name: 1.0}), F).intersecting) <= allowed, name
+
+
+def test_neutral_lids_cross_no_more_than_as_drawn(stages):
+    face, transferred, rig, _ = stages
+    F = face.faces[face.region("face")[face.faces].all(1)]
+    before, after = (mesh_quality(r.neutral, F).intersecting for r in (transferred, rig))
+    assert len(after) <= len(before)
+
+
+def test_an_eye_that_is_drawn_shut_does_not_fold(drawn_shut):
+    face, rig, _ = drawn_shut
+    F = face.faces[face.region("face")[face.faces].all(1)]
+    most = len(mesh_quality(face.vertices, F).intersecting) + 0.001 * len(F)
+    assert len(mesh_quality(rig.neutral, F).intersecting) <= len(mesh_quality(face.vertices, F).intersecting)
+    for name in ("eyeBlinkRight", "eyeSquintRight"):
+        assert len(mesh_quality(rig.vertices({name: 1.0}), F).intersecting) <= most, name
+
+
+@pytest.mark.parametrize("moved", [[[0.0, 0, 1]], [[0.0, 0, 1], [0.5, 0, 0]]])
+def test_anchors_that_come_again_pull_as_the_first_time(model, moved):
+    patch, at = eye_patch(model, "left"), lid_rings(model, "left").vertices
+    moves = np.zeros((len(at), 3))
+    moves[: len(moved)] = moved
+    pulled = patch.pulled(model.mean, at, model.mean[at] + moves)
+    for _ in range(2):
+        np.testing.assert_allclose(model.mean[patch.vertices] + patch.followed(at, moves), pulled, atol=1e-9)
+
+
+def test_ways_that_cross_are_made_alike(model):
+    """A dent that is pushed out by the way of one vertex is smoothed, and what crosses is gone."""
+    patch = eye_patch(model, "left")
+    ways = np.zeros(model.mean.shape)
+    ways[lid_rings(model, "left").upper[0, 12]] = [0.0, 8.0, 4.0]
+    assert len(crossing_all(patch, model.mean + ways)) > 0
+    better = smoothed_ways(model, patch, model.mean, ways, 0)
+    assert len(crossing_all(patch, model.mean + better)) == 0
+    np.testing.assert_array_equal(smoothed_ways(model, patch, model.mean, better, 0), better)
 
 
 def test_both_eyes_are_reported_closed(stages):
