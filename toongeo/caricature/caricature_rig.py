@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 # How far a drawing's lids are apart is a trait, not an expression: they are closed by contact, from where they are.
 _TRAITS = ("eyeBlink", "eyeWide")
 _STILL = 0.02  # of the largest motion: what moves no more in the normal face is still
-_WEIGHTS = BlendshapeWeights(saturation=0.1, softness=6.0)  # mm
+_WEIGHTS = BlendshapeWeights(saturation=0.2, softness=6.0)  # mm
 
 
 def caricature_rig(
