@@ -75,7 +75,7 @@ def preset(name: str, strength: float = 1.0) -> dict[str, float]:
     Examples
     --------
     >>> preset("kiss")
-    {'mouthPucker': 1.0, 'mouthFunnel': 0.2, 'eyeBlinkLeft': 0.3, 'eyeBlinkRight': 0.3}
+    {'mouthPucker': 1.0, 'eyeBlinkLeft': 0.3, 'eyeBlinkRight': 0.3}
     """
     if name not in PRESETS:
         raise ValueError(f"name: no preset {name!r}{nearest(name, PRESETS)}; known: {', '.join(PRESETS)}")
