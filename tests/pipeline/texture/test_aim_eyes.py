@@ -41,7 +41,7 @@ def test_the_gaze_of_a_seen_iris_comes_back(face_and_eyes, wanted):
     poles = np.array([pole(eyes, side, wanted) for side in (0, 1)])
     towards_viewer = face.camera.view(poles - eyes.centres)[:, 2] / eyes.radii
     irises = tuple(iris_at(px) for px in face.project(poles))
-    aimed = aim_eyes(face, eyes, irises)
+    aimed = aim_eyes(face, eyes, irises, unsure=(0, 0))
     expected = np.array([wanted.get(name, 0.0) for name in GAZE_NAMES])
     for side in (0, 1):
         if towards_viewer[side] > LEAST_FRONT:  # not so far aside that no picture shows it
@@ -52,6 +52,20 @@ def test_the_gaze_of_a_seen_iris_comes_back(face_and_eyes, wanted):
     assert (towards_viewer > LEAST_FRONT).any()
     np.testing.assert_array_equal(aimed.centres, eyes.centres)
     assert not eyes.pose.any()
+
+
+def test_what_the_pose_of_the_head_leaves_open_is_no_gaze(face_and_eyes):
+    """Up to the given angles the eyes look straight; beyond them, so much less aside."""
+    face, eyes = face_and_eyes
+    for weight in (0.3, 0.9):
+        iris = iris_at(face.project(pole(eyes, 0, {"eyeLookDownLeft": weight})[None])[0])
+        angle = weight * eyes.turn[0, 1]
+        for unsure in (angle / 3, 2 * angle):
+            down = aim_eyes(face, eyes, (iris, None), unsure=(90, unsure)).pose
+            expected = max(angle - unsure, 0) / eyes.turn[0, 1]
+            np.testing.assert_allclose(
+                down, np.where(np.array(GAZE_NAMES) == "eyeLookDownLeft", expected, 0), atol=0.02
+            )
 
 
 def test_an_eye_without_an_iris_looks_ahead(face_and_eyes):

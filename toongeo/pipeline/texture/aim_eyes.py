@@ -11,8 +11,16 @@ from toongeo.pipeline.texture.find_irises import Iris
 
 LEAST_FRONT = 0.5  # cosine to the line of sight: an iris nearer to the outline of its eyeball is brought in to there
 
+UNSURE = (3.0, 6.0)  # degrees sideways, and up or down: how little the pose of a drawn head is known
 
-def aim_eyes(face: AlignedFace, eyes: Eyes, irises: tuple[Iris | None, Iris | None]) -> Eyes:
+
+def aim_eyes(
+    face: AlignedFace,
+    eyes: Eyes,
+    irises: tuple[Iris | None, Iris | None],
+    *,
+    unsure: tuple[float, float] = UNSURE,
+) -> Eyes:
     """Keep the gaze of the picture as a pose of the eyes: each looks where its iris is seen.
 
     Parameters
@@ -22,6 +30,9 @@ def aim_eyes(face: AlignedFace, eyes: Eyes, irises: tuple[Iris | None, Iris | No
     eyes : Eyes
     irises : left and right Iris, or None where none was found
         From :func:`find_irises`; None looks straight ahead.
+    unsure : (2,) float, degrees
+        So far sideways, and up or down, a gaze is taken for straight, and a wider one for so much narrower: at rest the
+        irises then stay where they are drawn, unless they clearly look elsewhere.
 
     Returns
     -------
@@ -32,8 +43,16 @@ def aim_eyes(face: AlignedFace, eyes: Eyes, irises: tuple[Iris | None, Iris | No
     for side, iris in enumerate(irises):
         if iris is not None:
             direction = _towards(face, eyes.centres[side], eyes.radii[side], iris.centre)
-            weights |= gaze_weights(SIDES[side], direction, eyes.turn[side])
+            weights |= gaze_weights(SIDES[side], _narrowed(direction, unsure), eyes.turn[side])
     return dataclasses.replace(eyes, pose=np.array([weights.get(name, 0.0) for name in GAZE_NAMES]))
+
+
+def _narrowed(direction: np.ndarray, unsure: tuple[float, float]) -> np.ndarray:
+    """A direction (3,) whose angles sideways and upwards are nearer to 0 by ``unsure`` degrees, or 0."""
+    x, y, z = direction
+    angles = np.array([np.arctan2(x, z), np.arcsin(y)])
+    sideways, up = np.sign(angles) * np.maximum(np.abs(angles) - np.radians(unsure), 0)
+    return np.array([np.sin(sideways) * np.cos(up), np.sin(up), np.cos(sideways) * np.cos(up)])
 
 
 def _towards(face: AlignedFace, centre: np.ndarray, radius: float, px: np.ndarray) -> np.ndarray:
