@@ -27,12 +27,11 @@ from toongeo import (
     Rig,
     align_face,
     build_rig,
-    clear_lids,
-    close_lids,
     default_model,
     deformation_transfer,
     fit_3dmm,
-    fit_eyes,
+    fit_lids,
+    fit_mouth,
     neutral_face,
     read_image,
     read_landmarks,
@@ -42,7 +41,6 @@ from toongeo.model import MorphableModel, load_ict_facekit
 from toongeo.pipeline.rig.build_rig import AT_ONCE
 from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.rig.gaze import GAZE_NAMES
-from toongeo.pipeline.rig.line_sockets import line_sockets
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 MOVES_MM = 0.05
@@ -138,20 +136,18 @@ def picture_rows(name: str) -> None:
     landmarks = read_landmarks(PORTRAITS / f"{name}.pts")
     face = align_face(fit_3dmm(read_image(PORTRAITS / f"{name}.png"), landmarks), landmarks)
 
-    def stage() -> tuple[Rig, np.ndarray]:
+    def stage() -> tuple[Rig, np.ndarray, np.ndarray]:
         at_rest = neutral_face(face)
-        rig = close_lids(at_rest, build_rig(at_rest))
-        eyes = fit_eyes(at_rest, rig)
-        rig = line_sockets(at_rest, clear_lids(at_rest, rig, eyes), eyes)
+        rig, _ = fit_lids(at_rest, fit_mouth(at_rest, build_rig(at_rest)))
         shown = rig.neutral + face.vertices - at_rest.vertices
-        return rig, np.asarray(fit_pose(rig, shown, face.region("skin")))
+        return rig, shown, np.asarray(fit_pose(rig, shown, face.region("skin")))
 
     stage()  # what is cached once a process
     started = time.process_time()
-    rig, pose = stage()
+    rig, shown, pose = stage()
     seconds = time.process_time() - started
     skin = face.region("face")
-    moved, left = (np.sqrt(((V - face.vertices)[skin] ** 2).sum(1).mean()) for V in (rig.neutral, rig.vertices(pose)))
+    moved, left = (np.sqrt(((V - shown)[skin] ** 2).sum(1).mean()) for V in (rig.neutral, rig.vertices(pose)))
     plain, auto = build_rig(neutral_face(face)), build_rig(neutral_face(face), gain="auto")
     gains = [float(np.linalg.norm(a) / np.linalg.norm(b)) for a, b in zip(auto.deltas, plain.deltas, strict=True)]
     opened, wide = (gains[plain.names.index(expression)] for expression in ("jawOpen", "eyeWideLeft"))
