@@ -149,10 +149,9 @@ class ExpressionEditor:
 
 def _rig_at_rest(face: AlignedFace, rig: Rig, pose: np.ndarray) -> Rig:
     """Blendshapes of the face without its known expression: those built on a smile would be another's at rest."""
-    added = pose - rig.pose
-    if not added.any():
+    if np.array_equal(pose, rig.pose):
         return rig
-    at_rest = dataclasses.replace(face, vertices=face.vertices - np.tensordot(added, rig.deltas, 1))
+    at_rest = dataclasses.replace(face, vertices=face.vertices - np.tensordot(pose, rig.deltas, 1))
     rig, _ = fit_lids(at_rest, fit_mouth(at_rest, build_rig(at_rest)))
     return rig
 
