@@ -11,10 +11,13 @@ from toongeo.metrics import mesh_quality
 from toongeo.pipeline import (
     AlignedFace,
     FaceFit,
+    aim_eyes,
     bake_eyes,
     bake_texture,
     build_rig,
+    find_irises,
     fit_lids,
+    fit_mouth,
 )
 from toongeo.protocols import FaceParse
 
@@ -38,8 +41,11 @@ def plain_avatar(
         Side of the atlas, texels.
     """
     face = AlignedFace(fit.vertices, fit.camera, fit.landmark_vertices, fit.model, fit, report={})
-    rig, eyes = fit_lids(face, build_rig(face))
-    texture = bake_eyes(img, face, eyes, bake_texture(img, face, rig=rig, size=texture_size, parse=parse))
+    rig, eyes = fit_lids(face, fit_mouth(face, build_rig(face)))
+    irises = find_irises(img, landmarks)
+    eyes = aim_eyes(face, eyes, irises)
+    texture = bake_texture(img, face, rig=rig, size=texture_size, parse=parse)
+    texture = bake_eyes(img, face, eyes, texture, irises)
     errors = landmark_errors(fit, landmarks)
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(coarse=errors, aligned=errors, quality=quality, seconds={}, warnings=())
