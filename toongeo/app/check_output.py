@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from toongeo.io.side_files import check_side_files
-from toongeo.io.write_obj import side_paths
-from toongeo.io.write_obj_sequence import SEQUENCE
+from toongeo.io.writers.write_obj import side_paths
+from toongeo.io.writers.write_obj_sequence import SEQUENCE
 
 __all__ = ["check_output"]
 

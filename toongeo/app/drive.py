@@ -5,7 +5,7 @@ from pathlib import Path
 from toongeo.app.check_output import check_output
 from toongeo.app.read_take import read_landmark_take, read_take
 from toongeo.app.write_video import write_video
-from toongeo.load_avatar import load_avatar
+from toongeo.avatar.load_avatar import load_avatar
 
 __all__ = ["drive"]
 

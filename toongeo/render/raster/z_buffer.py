@@ -63,10 +63,8 @@ def z_buffer(
         depth = (zx * x[inside] + zy * y[inside] + z0).astype(np.float32)
         before = nearest[pixel]
         np.maximum.at(nearest, pixel, depth)
-        seen = np.flatnonzero((depth > before) & (depth == nearest[pixel]))[
-            ::-1
-        ]  # of equal ones the lower row comes last
-        rows[pixel[seen]] = face[seen]
+        seen = np.flatnonzero((depth > before) & (depth == nearest[pixel]))[::-1]
+        rows[pixel[seen]] = face[seen]  # the last of several stays: the lowest row
     return rows.reshape(height, width)
 
 
