@@ -49,6 +49,8 @@ def test_files_of_others_are_kept(tmp_path, scene, name, kind):
         (folder / name).symlink_to(target)
     elif kind == "other output":
         (folder / name).write_text(f"# {side_mark('other.obj')}\n")
+    elif not hasattr(os, "mkfifo"):
+        pytest.skip("this system has no named pipes")
     else:
         os.mkfifo(folder / name)
     before = (folder / name).lstat()

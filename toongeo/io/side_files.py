@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import json
 import os
 import struct
@@ -60,7 +59,7 @@ def check_side_files(paths: Iterable[str | os.PathLike[str]], owner: str) -> Non
         if not path.exists() or path.is_dir() or (path.is_file() and _bears(path, side_mark(owner))):
             continue
         raise FileExistsError(
-            errno.EEXIST, f"{path} is there already and was not written for {owner}; move it or choose another name"
+            f"{path} is there already and was not written for {owner}; move it or choose another name"
         )
 
 
