@@ -10,9 +10,11 @@ from toongeo.io import atomic_write, read_image, read_landmarks
 from toongeo.io.side_files import check_side_files, marked_picture
 from toongeo.model import data_path
 
-PICTURE = "examples/portraits/moustache_man"
-GLB, OBJ, SHEET = "avatar.glb", "avatar.obj", "contact-sheet.png"
-OWNER = "toongeo demo"
+__all__ = ["demo"]
+
+_PICTURE = "examples/portraits/moustache_man"
+_GLB, _OBJ, _SHEET = "avatar.glb", "avatar.obj", "contact-sheet.png"
+_OWNER = "toongeo demo"
 
 
 def demo(folder: Path) -> None:
@@ -28,11 +30,11 @@ def demo(folder: Path) -> None:
     started = time.perf_counter()
     folder.mkdir(parents=True, exist_ok=True)
     _check_folder(folder)
-    image, landmarks = data_path(f"{PICTURE}.png"), data_path(f"{PICTURE}.pts")
-    avatar = make(image, landmarks, folder / GLB)
-    avatar.save(folder / OBJ)
+    image, landmarks = data_path(f"{_PICTURE}.png"), data_path(f"{_PICTURE}.pts")
+    avatar = make(image, landmarks, folder / _GLB)
+    avatar.save(folder / _OBJ)
     sheet = contact_sheet(avatar, read_image(image), read_landmarks(landmarks))
-    atomic_write({folder / SHEET: marked_picture(sheet, OWNER)})
+    atomic_write({folder / _SHEET: marked_picture(sheet, _OWNER)})
     for path in sorted(folder.iterdir()):
         print(f"{path.stat().st_size / 1e6:7.2f} MB  {path}")
     print(
@@ -42,7 +44,7 @@ def demo(folder: Path) -> None:
 
 def _check_folder(folder: Path) -> None:
     """Names that the user did not give may stand for other files; the sheet's mark tells that a demo wrote them."""
-    check_side_files([folder / SHEET], OWNER)
-    if not (folder / SHEET).exists():
-        check_side_files([folder / GLB, folder / OBJ], OWNER)
-    check_output(folder / OBJ, {})
+    check_side_files([folder / _SHEET], _OWNER)
+    if not (folder / _SHEET).exists():
+        check_side_files([folder / _GLB, folder / _OBJ], _OWNER)
+    check_output(folder / _OBJ, {})

@@ -12,7 +12,7 @@ from toongeo.io.side_files import check_side_files, marked_picture
 
 __all__ = ["check_table", "save_table"]
 
-HEADING = b"picture,method,"  # a CSV file has no place for a mark
+_HEADING = b"picture,method,"  # a CSV file has no place for a mark
 
 
 def save_table(table: BenchTable, name: str, folder: Path | None) -> None:
@@ -47,10 +47,10 @@ def check_table(name: str, folder: Path) -> None:
         If there is one.
     """
     text = folder / f"{name}.csv"
-    unknown = [] if text.is_file() and _heading(text) == HEADING else [text]
+    unknown = [] if text.is_file() and _heading(text) == _HEADING else [text]
     check_side_files([folder / f"{name}.png", *unknown], f"toongeo bench {name}")
 
 
 def _heading(path: Path) -> bytes:
     with path.open("rb") as stream:
-        return stream.read(len(HEADING))
+        return stream.read(len(_HEADING))
