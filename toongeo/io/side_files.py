@@ -9,9 +9,7 @@ import zlib
 from collections.abc import Iterable
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from toongeo.arrays import Bytes
 from toongeo.io.encode_image import encode_image
 
 __all__ = ["check_side_files", "marked_picture", "side_mark"]
@@ -31,7 +29,7 @@ def side_mark(owner: str) -> str:
     return f"toongeo wrote this for {json.dumps(owner)}"
 
 
-def marked_picture(img: NDArray[np.uint8], owner: str) -> bytes:
+def marked_picture(img: Bytes, owner: str) -> bytes:
     """A PNG with the mark as its comment."""
     content = encode_image(img)
     chunk = b"tEXtComment\0" + side_mark(owner).encode()

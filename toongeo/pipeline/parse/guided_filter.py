@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Singles
 
 __all__ = ["guided_filter"]
 
 _SINGULAR = np.float32(1e-6)  # below this determinant a window counts as of one colour
 
 
-def guided_filter(
-    guide: NDArray[np.float32], plane: NDArray[np.float32], radius: int, softness: float
-) -> NDArray[np.float32]:
+def guided_filter(guide: Singles, plane: Singles, radius: int, softness: float) -> Singles:
     """Filter a plane so that it is an affine function of the guide's colours in every window (He et al. 2013, 3.6).
 
     Means are box filters over windows that are mirrored at the picture's border. In a window whose colours hardly vary
@@ -58,14 +57,14 @@ def guided_filter(
     return result
 
 
-def _box(plane: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
+def _box(plane: Singles, radius: int) -> Singles:
     side = 2 * radius + 1
     return np.asarray(cv2.boxFilter(plane, cv2.CV_32F, (side, side), borderType=cv2.BORDER_REFLECT), np.float32)
 
 
 def _covariances(
-    colours: list[NDArray[np.float32]], means: list[NDArray[np.float32]], radius: int, softness: np.float32
-) -> dict[tuple[int, int], NDArray[np.float32]]:
+    colours: list[Singles], means: list[Singles], radius: int, softness: np.float32
+) -> dict[tuple[int, int], Singles]:
     """Of the guide's channels in every window; the softness is added to the variances."""
     found = {}
     for i in range(3):
@@ -76,10 +75,10 @@ def _covariances(
     return found
 
 
-def _inverse(matrix: dict[tuple[int, int], NDArray[np.float32]]) -> list[list[NDArray[np.float32]]]:
+def _inverse(matrix: dict[tuple[int, int], Singles]) -> list[list[Singles]]:
     """Of symmetric 3 x 3 matrices, by their cofactors: rows of planes."""
 
-    def cofactor(i: int, j: int) -> NDArray[np.float32]:
+    def cofactor(i: int, j: int) -> Singles:
         (a, b), (c, d) = (((i + 1) % 3, (i + 2) % 3), ((j + 1) % 3, (j + 2) % 3))
         return matrix[a, c] * matrix[b, d] - matrix[a, d] * matrix[b, c]
 
@@ -89,7 +88,7 @@ def _inverse(matrix: dict[tuple[int, int], NDArray[np.float32]]) -> list[list[ND
     return [[plane / determinant for plane in row] for row in cofactors]
 
 
-def _combined(factors: list[NDArray[np.float32]], planes: list[NDArray[np.float32]]) -> NDArray[np.float32]:
+def _combined(factors: list[Singles], planes: list[Singles]) -> Singles:
     """Sum of products of planes."""
     first, second, third = (factor * plane for factor, plane in zip(factors, planes, strict=True))
     return (first + second) + third

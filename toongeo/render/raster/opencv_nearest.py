@@ -6,15 +6,17 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats, Integers, Singles
+
 __all__ = ["opencv_nearest"]
 
 _NEAREST, _FARTHEST = 0.99, 0.01  # depths in OpenCV's buffer, within (0, 1)
 
 
 def opencv_nearest(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int64],
-    growth: NDArray[np.float32],
+    points: Floats,
+    faces: Integers,
+    growth: Singles,
     height: int,
     width: int,
 ) -> NDArray[np.int32]:

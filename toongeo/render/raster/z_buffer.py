@@ -7,16 +7,18 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats, Integers, Singles
+
 __all__ = ["z_buffer"]
 
 _CANDIDATES = 2**18  # pixels of bounding boxes at once, unless one face has more: some 30 MB
 
 
 def z_buffer(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int64],
-    affine: NDArray[np.float64],
-    growth: NDArray[np.float32],
+    points: Floats,
+    faces: Integers,
+    affine: Floats,
+    growth: Singles,
     height: int,
     width: int,
 ) -> NDArray[np.int32]:
@@ -68,9 +70,7 @@ def z_buffer(
     return rows.reshape(height, width)
 
 
-def _depth_planes(
-    depth: NDArray[np.float64], faces: NDArray[np.int64], affine: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _depth_planes(depth: Floats, faces: Integers, affine: Floats) -> Floats:
     """Three numbers a face (m, 3): the depth at a pixel, from 0 to 1 over all faces, is zx x + zy y + z0."""
     corners = depth[faces]
     lowest, span = corners.min(initial=np.inf), np.ptp(corners) if len(corners) else 0.0
@@ -82,8 +82,8 @@ def _depth_planes(
 
 
 def _candidates(
-    points: NDArray[np.float64], faces: NDArray[np.int64], growth: NDArray[np.float32], height: int, width: int
-) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]]:
+    points: Floats, faces: Integers, growth: Singles, height: int, width: int
+) -> Iterator[tuple[Integers, Integers, Integers]]:
     """Face, x and y of the pixels of bounding boxes, in the order of the faces."""
     corners = points[:, :2][faces]
     low, high = corners.min(axis=1), corners.max(axis=1)
