@@ -11,7 +11,7 @@ from toongeo.arrays import Floats, Integers, Singles
 
 __all__ = ["z_buffer"]
 
-_CANDIDATES = 2**18  # pixels of bounding boxes at once, unless one face has more: some 30 MB
+_CANDIDATES = 2**18  # pixels of bounding boxes at once, unless one face has more: some tens of MB
 
 
 def z_buffer(
