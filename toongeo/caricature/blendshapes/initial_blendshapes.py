@@ -1,4 +1,7 @@
-"""Expressions of a caricature from those of the normal face behind it (Chen et al. 2020, section 3.2.2)."""
+"""Expressions of a caricature from those of the normal face behind it (Chen et al. 2020, section 3.2.2).
+
+Constants were judged on faces of the deformation space and four pictures (``benchmarks/caricature_expressions.py``).
+"""
 
 from __future__ import annotations
 
@@ -28,9 +31,9 @@ from toongeo.render.camera import ScaledOrthographicCamera
 __all__ = ["InitialBlendshapes", "initial_blendshapes"]
 
 _PRIOR = 1e-6  # of the fit to F+(L), which is a face of people: it should keep what F+ tells
-_RIDGE = 1e-3
-_STEPS = 2
-_SAME = 1e-5
+_RIDGE = 1e-3  # of the mean diagonal: keeps weights of like shapes small
+_STEPS = 2  # of Levenberg-Marquardt: the fit only starts the optimization
+_SAME = 1e-5  # largest difference of stretches at which a shape is one of the space's own
 
 
 @dataclass(frozen=True, eq=False)

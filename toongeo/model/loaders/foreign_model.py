@@ -10,7 +10,7 @@ from toongeo.model.ibug68 import PARTS
 
 __all__ = ["mirrored_vertices", "named_parts"]
 
-_MARGIN_MM = 8.0
+_MARGIN_MM = 8.0  # around a part's landmarks
 _PARTS = {"eye_left": ("eye_left",), "eye_right": ("eye_right",), "mouth": ("mouth",), "nose": ("nose",)}
 
 

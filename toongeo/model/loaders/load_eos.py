@@ -17,7 +17,7 @@ __all__ = ["load_eos"]
 _VERSION = 1
 _EYE_DEPTH_MM = 13.0  # from the corners of an eye back to its centre
 _INNER_MOUTH_CORNERS = {60: 48, 64: 54}  # the published table leaves them out: the outer corners take their place
-_GREY = 0.6
+_GREY = 0.6  # sRGB of a model without colours
 
 
 def load_eos(shape: str | Path, landmarks: str | Path, expression: str | Path | None = None) -> MorphableModel:

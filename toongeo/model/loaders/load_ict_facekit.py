@@ -16,7 +16,7 @@ __all__ = ["load_ict_facekit"]
 _MM = 10.0  # the file is in centimetres
 _N_SKIN, _N_NARROW, _N_FACE = 11248, 6706, 9409  # the vertex order of the topology: narrow face, face, head and neck
 _EYEBALLS = slice(21451, 23021), slice(23021, 24591)  # left, right
-_GREY = 0.6
+_GREY = 0.6  # sRGB of a model without colours
 
 
 def load_ict_facekit(path: str | Path) -> MorphableModel:

@@ -1,4 +1,7 @@
-"""The coarse face deformed onto the landmarks of the picture."""
+"""The coarse face deformed onto the landmarks of the picture.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/alignment.py``).
+"""
 
 import time
 from dataclasses import dataclass

@@ -1,4 +1,7 @@
-"""Eye landmarks onto the lids that the picture shows (Pan et al. 2024, section 3.2.1)."""
+"""Eye landmarks onto the lids that the picture shows (Pan et al. 2024, section 3.2.1).
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/snapping.py``).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The picture on the UV atlas of the model."""
+"""The picture on the UV atlas of the model.
+
+Constants were chosen by eye on the seven examples.
+"""
 
 import dataclasses
 from functools import lru_cache

@@ -1,4 +1,7 @@
-"""The part of the picture that shows the face, and which of its pixels are skin."""
+"""The part of the picture that shows the face, and which of its pixels are skin.
+
+Constants were chosen on the seven examples, whose painted backgrounds must not come through.
+"""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,7 @@
-"""A rig for a head that was modelled elsewhere."""
+"""A rig for a head that was modelled elsewhere.
+
+Constants were judged on ICT-FaceKit's head and the template (``benchmarks/register.py``), on no picture.
+"""
 
 import time
 

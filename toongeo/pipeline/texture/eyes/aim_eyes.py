@@ -1,4 +1,7 @@
-"""Eyes that look where they look in the picture."""
+"""Eyes that look where they look in the picture.
+
+Constants were chosen by eye; which of the seven examples and 15 caricatures were looked at was not written down.
+"""
 
 import dataclasses
 

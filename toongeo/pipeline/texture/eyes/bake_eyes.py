@@ -1,4 +1,7 @@
-"""The drawn eyes on the eyeballs."""
+"""The drawn eyes on the eyeballs.
+
+Constants were chosen by eye; which of the seven examples and 15 caricatures were looked at was not written down.
+"""
 
 from functools import lru_cache
 

@@ -1,4 +1,7 @@
-"""Where the irises are in a picture."""
+"""Where the irises are in a picture.
+
+Constants were chosen by eye; which of the seven examples and 15 caricatures were looked at was not written down.
+"""
 
 from __future__ import annotations
 
