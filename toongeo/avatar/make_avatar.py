@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, landmark_errors, shape_warnings
 from toongeo.caricature import caricature_rig
 from toongeo.caricature.align_caricature import align_caricature
@@ -66,7 +67,8 @@ def make_avatar(
     landmarks : (68, 2) float, px
         iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
     model : MorphableModel, optional
-        :func:`toongeo.default_model` unless another is given.
+        :func:`toongeo.default_model` unless another is given. What it does not have (eyeballs, teeth, expressions,
+        texture coordinates ...) the avatar does without; ``report.warnings`` says what.
     parser : FaceParser, optional
         Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
     snap : bool
@@ -143,7 +145,7 @@ def make_avatar(
         aligned=landmark_errors(face, landmarks),
         quality=quality,
         seconds=clock.stop(),
-        warnings=(*fit.report.warnings, *shape_warnings(face, eyes, quality)),
+        warnings=(*fit.report.warnings, *missing_parts(model), *shape_warnings(face, eyes, quality)),
     )
     return Avatar(fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report)
 

@@ -49,7 +49,9 @@ def neutral_face(face: AlignedFace) -> AlignedFace:
     transfer = DeformationTransfer(
         face.fit.vertices, model.faces, face.vertices, pinned=still_vertices(model), align=True
     )
-    V = _lips_as(model, fit.vertices, transfer(fit.vertices), share)
+    V = transfer(fit.vertices)
+    if model.has("mouth"):
+        V = _lips_as(model, fit.vertices, V, share)
     return dataclasses.replace(face, vertices=keep_teeth_inside(model, V), fit=fit)
 
 
