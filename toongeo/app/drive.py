@@ -8,8 +8,8 @@ from toongeo.avatar.load_avatar import load_avatar
 
 __all__ = ["drive"]
 
-OUTPUTS = (".mp4", ".glb")
-SIZE, FPS = 512, 30.0
+_OUTPUTS = (".mp4", ".glb")
+_SIZE, _FPS = 512, 30.0
 
 
 def drive(
@@ -18,8 +18,8 @@ def drive(
     *,
     weights: Path | None = None,
     landmarks: Path | None = None,
-    size: int = SIZE,
-    fps: float = FPS,
+    size: int = _SIZE,
+    fps: float = _FPS,
     take_fps: float | None = None,
 ) -> None:
     """Play a take on an avatar and write it down.
@@ -49,8 +49,8 @@ def drive(
         If a file is not what it should be, or an option has no such value.
     """
     suffix = output.suffix.lower()
-    if suffix not in OUTPUTS:
-        raise ValueError(f"output: expected a name that ends in {' or '.join(OUTPUTS)}, got {output}")
+    if suffix not in _OUTPUTS:
+        raise ValueError(f"output: expected a name that ends in {' or '.join(_OUTPUTS)}, got {output}")
     if not output.parent.is_dir():
         raise OSError(f"output: no folder {output.parent} to write {output.name} to")
     if (weights is None) == (landmarks is None):

@@ -12,6 +12,8 @@ from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.avatar.save_avatar import writer_for
 from toongeo.io import read_image, read_landmarks
 
+__all__ = ["make"]
+
 
 def make(
     image: Path,

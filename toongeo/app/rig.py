@@ -8,7 +8,9 @@ from toongeo.io import Scene, SceneMesh, read_image, read_mesh_landmarks, read_o
 from toongeo.io.scene import METRES
 from toongeo.pipeline import Rig, rig_mesh
 
-TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored
+__all__ = ["rig"]
+
+_TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored
 
 
 def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = None) -> Rig:
@@ -54,7 +56,7 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
         target_names=found.names,
     )
     size = float(np.linalg.norm(np.ptp(head.vertices, axis=0)))
-    write_glb(output, Scene((head,)), tolerance_mm=TOLERANCE * size)
+    write_glb(output, Scene((head,)), tolerance_mm=_TOLERANCE * size)
     report = found.report
     print(f"{len(found.names)} expressions on {len(read.vertices)} vertices in {report['seconds']:.1f} s")
     print(f"{report['matched']:.1%} of the template's face found a partner, mean distance {report['distance']:.3g}")

@@ -21,7 +21,9 @@ from toongeo.render import (
     studio_light,
 )
 
-HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
+__all__ = ["Avatar", "Weights"]
+
+_HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
 Weights = Mapping[str, float] | np.ndarray | None
 
 
@@ -197,7 +199,7 @@ class Avatar(AvatarStages):
         skin = self.rig.neutral[self.face.region("skin")]
         low, high = skin.min(0), skin.max(0)
         return ScaledOrthographicCamera.look(
-            yaw, pitch, size=size, centre=(low + high) / 2, extent=HEADROOM * (high - low).max()
+            yaw, pitch, size=size, centre=(low + high) / 2, extent=_HEADROOM * (high - low).max()
         )
 
 

@@ -20,6 +20,8 @@ __all__ = ["MorphableModel"]
 
 _GREY = 0.6  # sRGB of a model without colours: of the lightness of skin, without its hue
 
+__all__ = ["MorphableModel"]
+
 
 def _nothing() -> np.ndarray:
     return np.zeros(0)

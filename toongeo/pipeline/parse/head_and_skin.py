@@ -8,11 +8,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Mask
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.cut_out import cut_out
 from toongeo.pipeline.parse.face_zones import FaceZones
-from toongeo.pipeline.parse.masks import Mask, grown
+from toongeo.pipeline.parse.masks import grown
 from toongeo.pipeline.parse.skin_surface import colour_mode, skin_surface
 from toongeo.pipeline.parse.working_view import WorkingView
 
