@@ -56,6 +56,7 @@ from toongeo.pipeline import build_rig as build_rig
 from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import fit_3dmm as fit_3dmm
+from toongeo.pipeline import fit_3dmm_together as fit_3dmm_together
 from toongeo.pipeline import fit_eyes as fit_eyes
 from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.pipeline import fit_mouth as fit_mouth

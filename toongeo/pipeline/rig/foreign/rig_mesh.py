@@ -14,6 +14,7 @@ from toongeo.model.ibug68 import INNER
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.straighten_teeth import PARTS
 from toongeo.pipeline.rig.foreign.carry_shapes import carry_shapes
+from toongeo.pipeline.rig.foreign.check_winding import check_winding
 from toongeo.pipeline.rig.foreign.close_gaps import close_gaps
 from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
 from toongeo.pipeline.rig.foreign.register_face import hidden, register_face
@@ -58,8 +59,8 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     Raises
     ------
     ValueError
-        On a malformed mesh, landmarks of another shape, out of range or too few, or a mesh that is no face where the
-        landmarks are.
+        On a malformed mesh, landmarks of another shape, out of range or too few, triangles that face into the head, or
+        a mesh that is no face where the landmarks are.
 
     See Also
     --------
@@ -82,11 +83,12 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     vertices, faces = validate_mesh(V, F)
     used = np.unique(faces)
     points = _checked_points(vertices, faces, landmarks, model)
+    check_winding(vertices, faces, points, model)
     # Vertices in no triangle have no surface around them, and stay.
     local = np.searchsorted(used, faces)
     head = register_face(vertices[used], local, points, model)
     skin = ~hidden(model)
-    face = model.regions.get("face", skin) & skin
+    face = model.region("face") & skin
     matched = float(head.registration.matched[face].mean())
     if matched < _LEAST_MATCHED:
         raise ValueError(
