@@ -35,6 +35,8 @@ from toongeo.geometry import nonrigid_register as nonrigid_register
 from toongeo.io import read_image as read_image
 from toongeo.io import read_landmarks as read_landmarks
 from toongeo.io import write_landmarks as write_landmarks
+from toongeo.metrics import GradientCheck as GradientCheck
+from toongeo.metrics import check_gradient as check_gradient
 from toongeo.model import MorphableModel as MorphableModel
 from toongeo.model import default_model as default_model
 from toongeo.model import expression_weights as expression_weights

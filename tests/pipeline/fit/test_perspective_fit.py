@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from toongeo.io import read_landmarks
+from toongeo.metrics import check_gradient
 from toongeo.model import data_path
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.ibug68 import MIRROR, PARTS
@@ -62,8 +63,8 @@ def direction(unknowns, block):
 
 
 @pytest.mark.parametrize("block", BLOCKS)
-def test_taylor_slope(loss, unknowns, x, taylor_slope, block):
-    assert taylor_slope(loss, x, direction(unknowns, block)) == pytest.approx(2, abs=0.1)
+def test_taylor_slope(loss, unknowns, x, block):
+    assert check_gradient(loss, x, direction(unknowns, block)).passed
 
 
 @pytest.mark.parametrize("block", BLOCKS)
