@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from toongeo.app.check_output import check_output
 from toongeo.io import Scene, SceneMesh, read_image, read_mesh_landmarks, read_obj, write_glb
 from toongeo.io.scene import METRES
 from toongeo.pipeline import Rig, rig_mesh
@@ -30,12 +31,12 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     Raises
     ------
     ValueError, OSError
-        For bad input or an output that cannot be written; the output is checked before the work.
+        For bad input or an output that cannot be written or is a file that is read; the output is checked before the
+        work.
     """
     if output.suffix.lower() != ".glb":
         raise ValueError(f"output: expected a name that ends in .glb, got {output}")
-    if not output.parent.is_dir():
-        raise OSError(f"output: no folder {output.parent} to write {output.name} to")
+    check_output(output, {"mesh": mesh, "landmarks": landmarks, "texture": texture})
     if mesh.suffix.lower() != ".obj":
         raise ValueError(f"mesh: expected a name that ends in .obj, got {mesh}")
     read = read_obj(mesh)

@@ -65,21 +65,23 @@ def pair_sheets(folder: Path, output: Path, *, seed: int = 0, against: str = "co
     ValueError
         If the folder holds no pictures or lacks landmarks, or the baseline or the seed is not one.
     OSError
-        If the output holds answers already, which would be lost, or cannot be written.
+        If the output holds sheets, a key or answers already, which would be lost, or cannot be written.
     """
     if against not in BASELINES:
         raise ValueError(f"against: expected one of {', '.join(BASELINES)}, got {against!r}")
     if seed < 0:
         raise ValueError(f"seed: expected an integer >= 0, got {seed}")
     pictures = bench_folder(folder)
-    if (output / _ANSWERS).exists():
-        raise FileExistsError(f"output: {output / _ANSWERS} is there already; choose another folder or move it")
+    names = [f"pair-{k + 1:02d}" for k in range(len(pictures))]
+    for path in (output / _ANSWERS, output / KEY, *(output / f"{name}.png" for name in names)):
+        if path.exists():
+            raise FileExistsError(f"output: {path} is there already; choose another folder or move it")
     rng = np.random.default_rng(seed)
     order, ours_first = rng.permutation(len(pictures)), rng.permutation(len(pictures)) % 2 == 0
     sheets: dict[str | os.PathLike[str], bytes] = {}
     pairs: dict[str, dict[str, str]] = {}
     for k, which in enumerate(tqdm(order, unit="pair", leave=False)):
-        picture, name = pictures[which], f"pair-{k + 1:02d}"
+        picture, name = pictures[which], names[k]
         img, landmarks = picture.read()
         try:
             ours, baseline = _rivals(img, landmarks, against)
