@@ -40,6 +40,8 @@ from toongeo.metrics import check_gradient as check_gradient
 from toongeo.model import MorphableModel as MorphableModel
 from toongeo.model import default_model as default_model
 from toongeo.model import expression_weights as expression_weights
+from toongeo.model import load_eos as load_eos
+from toongeo.model import load_ict_facekit as load_ict_facekit
 from toongeo.model import preset as preset
 from toongeo.pipeline import AlignedFace as AlignedFace
 from toongeo.pipeline import Animator as Animator
@@ -62,6 +64,7 @@ from toongeo.pipeline import fit_3dmm_together as fit_3dmm_together
 from toongeo.pipeline import fit_eyes as fit_eyes
 from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.pipeline import fit_mouth as fit_mouth
+from toongeo.pipeline import ibug_landmarks as ibug_landmarks
 from toongeo.pipeline import keep_lids_outside as keep_lids_outside
 from toongeo.pipeline import neutral_face as neutral_face
 from toongeo.pipeline import parse_face as parse_face

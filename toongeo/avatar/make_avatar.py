@@ -3,7 +3,7 @@
 import dataclasses
 import time
 from collections.abc import Callable, Mapping
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from toongeo.pipeline import (
     photometric_fit,
     snap_eyes,
 )
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
@@ -59,6 +60,7 @@ def make_avatar(
     method: Literal["cartoon", "caricature"] = "cartoon",
     rig: Literal["transfer", "caricature"] = "transfer",
     texture_size: int = 1024,
+    scheme: Any = "ibug68",
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
     """A textured, rigged, animatable 3D face from one picture (the whole way of Pan et al. 2024).
@@ -92,6 +94,9 @@ def make_avatar(
         from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
     texture_size : int
         Side of the texture atlas in texels.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}, or a table
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`. With a table of points on the model (as of
+        :class:`toongeo.FitOptions`) the face is fitted to these, and then stands for its 68 landmarks.
     progress : callable, optional
         Called with the name of each stage before it starts: one of ``STAGES``.
 
@@ -116,7 +121,12 @@ def make_avatar(
 
     clock.start("fit")
     model = model or default_model()
-    fit = fit_3dmm(img, landmarks, model=model)
+    if isinstance(scheme, str):
+        landmarks = ibug_landmarks(landmarks, scheme)
+        fit = fit_3dmm(img, landmarks, model=model)
+    else:
+        fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
+        landmarks = fit.project(fit.vertices[fit.landmark_vertices])
     clock.start("parse")
     parse = parse_face(img, landmarks, fit, parser=parser)
     if snap:

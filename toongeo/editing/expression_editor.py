@@ -3,6 +3,7 @@
 import dataclasses
 import zlib
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -13,11 +14,12 @@ from toongeo.editing.texture.new_skin import NewSkin
 from toongeo.editing.texture.picture_mesh import picture_mesh
 from toongeo.editing.texture.picture_warp import picture_warp
 from toongeo.editing.texture_generator import ClassicalTextureGenerator
-from toongeo.io import check_image, landmark_array
+from toongeo.io import check_image
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.anatomy.lid_rings import lids_of
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline import AlignedFace, FaceFit, Rig, build_rig, fit_lids, fit_mouth
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.weight_vector import weight_vector
 from toongeo.protocols import TextureGenerator, TextureGeometry
 
@@ -47,6 +49,8 @@ class ExpressionEditor:
         way to the texture, and lashes are drawn, whoever made it.
     pose : mapping of name to weight, or (46,) array, optional
         The expression that the picture shows, where it is known; ``avatar.rig.pose`` if None.
+    scheme : str or table
+        What the landmarks are: see :func:`toongeo.make_avatar`.
 
     Raises
     ------
@@ -63,9 +67,10 @@ class ExpressionEditor:
         avatar: Avatar | None = None,
         generator: TextureGenerator | None = None,
         pose: Mapping[str, float] | np.ndarray | None = None,
+        scheme: Any = "ibug68",
     ) -> None:
         check_image(img)
-        self.avatar = avatar or make_avatar(img, landmarks, texture_size=_TEXTURE_SIZE)
+        self.avatar = avatar or make_avatar(img, landmarks, texture_size=_TEXTURE_SIZE, scheme=scheme)
         face, rig = self.avatar.face, self.avatar.rig
         if pose is not None:
             rig = _rig_at_rest(face, rig, weight_vector(pose, rig.names))
@@ -76,9 +81,10 @@ class ExpressionEditor:
         self._generator = generator or ClassicalTextureGenerator(face.model, rig, self.avatar.texture)
         self._new_skin = NewSkin(face.model, rig, self.avatar.texture)
         self._mesh = picture_mesh(face, self.avatar.eyes)
-        points = np.where(
-            np.isfinite(landmark_array(landmarks)), landmarks, face.project(face.vertices[face.landmark_vertices])
-        )
+        points = face.project(face.vertices[face.landmark_vertices])
+        if isinstance(scheme, str):
+            given = ibug_landmarks(landmarks, scheme)
+            points = np.where(np.isfinite(given), given, points)
         self._warp = picture_warp(img, points, self._mesh, self.avatar.parse)
 
     @property

@@ -9,6 +9,7 @@ from toongeo.pipeline.fit import RidgeRegressor as RidgeRegressor
 from toongeo.pipeline.fit import adjust_coefficients as adjust_coefficients
 from toongeo.pipeline.fit import fit_3dmm as fit_3dmm
 from toongeo.pipeline.fit import fit_3dmm_together as fit_3dmm_together
+from toongeo.pipeline.fit import ibug_landmarks as ibug_landmarks
 from toongeo.pipeline.fit import photometric_fit as photometric_fit
 from toongeo.pipeline.fit import rendered_picture as rendered_picture
 from toongeo.pipeline.fit import residual_map as residual_map

@@ -10,7 +10,7 @@ import numpy as np
 
 from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS
 from toongeo.pipeline.fit.check_positive import check_positive
-from toongeo.pipeline.fit.landmarks.ibug_landmarks import SCHEMES
+from toongeo.pipeline.fit.ibug_landmarks import SCHEMES
 from toongeo.pipeline.fit.landmarks.robust_weights import KERNELS
 
 __all__ = ["FitOptions", "changed_options"]

@@ -9,7 +9,7 @@ from toongeo.model.ibug68 import INNER
 from toongeo.model.mediapipe478 import VERTICES
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.landmarks.ibug_landmarks import PARTS_OF_IBUG, ibug_landmarks
+from toongeo.pipeline.fit.ibug_landmarks import PARTS_OF_IBUG, ibug_landmarks
 from toongeo.render import ScaledOrthographicCamera
 
 CAMERA = ScaledOrthographicCamera.look(yaw=18, pitch=-6, roll=9, size=600)

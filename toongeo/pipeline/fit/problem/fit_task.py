@@ -15,7 +15,7 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.landmarks.ibug_landmarks import ibug_landmarks
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.fit.landmarks.landmark_table import landmark_table, table_landmarks
 from toongeo.pipeline.fit.losses.nlopt_minimize import known_algorithms
 from toongeo.pipeline.fit.problem.landmark_problem import LandmarkProblem
