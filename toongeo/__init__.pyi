@@ -49,9 +49,12 @@ from toongeo.pipeline import ClassicalParser as ClassicalParser
 from toongeo.pipeline import Eyes as Eyes
 from toongeo.pipeline import FaceFit as FaceFit
 from toongeo.pipeline import FitOptions as FitOptions
+from toongeo.pipeline import JawOptions as JawOptions
 from toongeo.pipeline import PhotometricOptions as PhotometricOptions
+from toongeo.pipeline import PriorOptions as PriorOptions
 from toongeo.pipeline import RidgeRegressor as RidgeRegressor
 from toongeo.pipeline import Rig as Rig
+from toongeo.pipeline import SolverOptions as SolverOptions
 from toongeo.pipeline import adjust_coefficients as adjust_coefficients
 from toongeo.pipeline import align_face as align_face
 from toongeo.pipeline import bake_eyes as bake_eyes

@@ -69,7 +69,7 @@ class MorphableModel:
     Raises
     ------
     ValueError
-        If the mean of the prior has another length than there are identity modes, or the landmarks are no 68 vertices.
+        If the mean of the prior has another length than there are identity modes, or a landmark is no vertex.
     """
 
     mean: np.ndarray
@@ -94,9 +94,9 @@ class MorphableModel:
         if self.prior is not None and self.prior.mean.shape != (len(self.identity),):
             expected = (len(self.identity),)
             raise ValueError(f"prior: expected a mean of shape {expected}, got {self.prior.mean.shape}")
-        if self.landmarks.shape != (68,) or self.landmarks.min() < 0 or self.landmarks.max() >= len(self.mean):
-            got = f"{self.landmarks.shape} from {self.landmarks.min()} to {self.landmarks.max()}"
-            raise ValueError(f"landmarks: expected (68,) vertices of the {len(self.mean)}, got {got}")
+        if self.landmarks.size and not 0 <= self.landmarks.min() <= self.landmarks.max() < len(self.mean):
+            got = f"{self.landmarks.min()} to {self.landmarks.max()}"
+            raise ValueError(f"landmarks: expected vertices in 0..{len(self.mean) - 1}, got {got}")
         for name, value in self._stand_ins().items():
             object.__setattr__(self, name, value)
         read_only(self, *(part.name for part in fields(self) if part.name not in ("eyes", "prior")))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from toongeo.metrics import check_gradient
+from toongeo.pipeline import SolverOptions
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_3dmm_together import fit_3dmm_together
 from toongeo.pipeline.fit.fit_options import FitOptions
@@ -91,8 +92,8 @@ def test_three_pictures_know_a_person_better_than_one(model, person):
 
 def test_the_order_of_the_pictures_does_not_matter(person):
     pictures = person(3)[1]
-    first = fit_3dmm_together([None] * 3, pictures, tolerance=1e-11)
-    second = fit_3dmm_together([None] * 3, pictures[::-1], tolerance=1e-11)
+    first = fit_3dmm_together([None] * 3, pictures, solver=SolverOptions(tolerance=1e-11))
+    second = fit_3dmm_together([None] * 3, pictures[::-1], solver=SolverOptions(tolerance=1e-11))
     np.testing.assert_allclose(second[0].identity, first[2].identity, atol=2e-3)
 
 

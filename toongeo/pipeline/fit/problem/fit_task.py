@@ -79,7 +79,7 @@ class FitTask:
         if options.adjust is None:
             return fit
         return adjust_coefficients(
-            fit, self.pixels, options.adjust, algorithm=algorithm, max_evaluations=options.max_evaluations
+            fit, self.pixels, options.adjust, algorithm=algorithm, max_evaluations=options.solver.max_evaluations
         )
 
 

@@ -105,7 +105,7 @@ class LandmarkProblem:
         """
         x, placement = self.start, self.placement(self.start)
         passes = evaluations = 0
-        while passes < self.options.max_passes:
+        while passes < self.options.solver.max_passes:
             loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
             decoupled = decoupled_pose(loss, x)
             minimum = nlopt_minimize(
@@ -114,9 +114,9 @@ class LandmarkProblem:
                 bounds=(self.bounds[0], placement.upper),
                 scale=1 / np.sqrt(decoupled.curvature),
                 algorithm=algorithm,
-                tolerance=self.options.tolerance,
-                max_evaluations=self.options.max_evaluations,
-                max_seconds=self.options.max_seconds,
+                tolerance=self.options.solver.tolerance,
+                max_evaluations=self.options.solver.max_evaluations,
+                max_seconds=self.options.solver.max_seconds,
             )
             x = decoupled.x(minimum.x)
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
@@ -137,7 +137,7 @@ class LandmarkProblem:
         prior_weight = placement.prior_weight
         if first:
             misfit = float((trust * np.einsum("ki,kij,kj->k", errors, self.weights, errors)).sum()) / self.count
-            expected = 2 * self.options.landmark_deviation**2
+            expected = 2 * self.options.prior.landmark_deviation**2
             prior_weight *= 1 + _GROWTH * max(0.0, misfit / expected - 1)
         upper = exclusive_bounds(placement.upper, x, self.opposites)
         return PassState(self.visible(x), trust, prior_weight, upper)
@@ -193,7 +193,7 @@ class LandmarkProblem:
             rotation0=self.frame.rotation0,
             principal=self.frame.from_pixels(self.principal_point),
         )
-        nod = PitchPrior(self.unknowns, self.frame.rotation0, self.options.pitch_deviation)
+        nod = PitchPrior(self.unknowns, self.frame.rotation0, self.options.prior.pitch_deviation)
         pitch_weight = prior_weight / self.options.prior_weight * _PITCH_WEIGHT
         return TotalLoss(landmark, self.prior, nod, self.options.landmark_weight, prior_weight, pitch_weight)
 
@@ -206,7 +206,7 @@ class LandmarkProblem:
         reasons = outlier_errors(residuals, self.neighbours)
         costs = np.einsum("cki,kij,ckj->ck", reasons, self.weights, reasons).min(axis=0)
         squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
-        return robust_weights(squares, self.options.robust, (_ROUGH * self.options.landmark_deviation) ** 2)
+        return robust_weights(squares, self.options.robust, (_ROUGH * self.options.prior.landmark_deviation) ** 2)
 
     def visible(self, x: Floats) -> NDArray[np.int64]:
         """The 68 landmark vertices of the face at ``x``: jaw points on their lines, or on the silhouette."""

@@ -66,7 +66,7 @@ def starting_problem(
     face = face + offsets if own is None else face
     frame, trust = _first_pose(face, pixels, seen, options, guess, table)
     principal_point = principal_point_of(options, image_centre, frame)
-    bounds = _bounds(model, unknowns, expected, options.max_deviation)
+    bounds = _bounds(model, unknowns, expected, options.prior.max_deviation)
     if unknowns.perspective:
         start[unknowns.translation] = -frame.from_pixels(principal_point)
         for bound in bounds:
@@ -89,7 +89,7 @@ def starting_problem(
         points=points[seen],
         weights=weights[seen] / basis.outer_eye_mm**2,
         offsets=offsets,
-        prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight, expected),
+        prior=PriorLoss(unknowns, options.prior.identity_weight, options.prior.expression_weight, expected),
         bounds=bounds if options.refine else held_bounds(bounds, start, unknowns, guess.pose is not None),
         options=options,
         own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
