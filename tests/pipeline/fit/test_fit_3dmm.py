@@ -88,10 +88,11 @@ def test_a_stronger_prior_is_a_smaller_face_and_a_larger_error(model, face):
 def test_the_minimum_is_one(model, face):
     """No small step within the bounds lowers the loss of a pass."""
     problem = starting_problem(model, face, FitOptions(solver=SolverOptions(tolerance=1e-14, max_passes=1)))
-    problem = replace(problem, opposites=problem.opposites[:0])  # which are parted after a pass
+    apart = replace(problem.search, opposites=problem.search.opposites[:0])  # these are parted after a pass
+    problem = replace(problem, search=apart)
     fit = problem.solve("LD_LBFGS")
-    placed = visible_landmarks(problem.basis, problem.start[:144], problem.frame.rotation0)
-    loss = problem.loss(placed, problem.options.prior_weight, problem.trust)
+    placed = visible_landmarks(problem.basis, problem.search.start[:144], problem.frame.rotation0)
+    loss = problem.loss(placed, problem.options.prior_weight, problem.target.trust)
     x = np.zeros(problem.unknowns.size)
     x[problem.unknowns.shape] = fit.coefficients
     # The pose is optimal for these coefficients: find it again from the camera.
@@ -101,7 +102,7 @@ def test_the_minimum_is_one(model, face):
     x[problem.unknowns.translation] = problem.frame.from_pixels(fit.camera.translation[None])[0]
     value, gradient = loss(x)
     assert value == pytest.approx(fit.loss, rel=1e-12)
-    lower, upper = problem.bounds
+    lower, upper = problem.search.bounds
     free = np.where((x > lower) & (gradient > 0) | (x < upper) & (gradient < 0), gradient, 0)
     assert np.abs(free / np.sqrt(loss.curvature(x))).max() < 1e-6
 

@@ -19,14 +19,14 @@ def problem(request, model, annotated, random_face):
 
 @pytest.fixture(scope="module")
 def loss(problem):
-    placed = problem.placement(problem.start)
+    placed = problem.placement(problem.search.start)
     return problem.loss(placed.vertices, placed.prior_weight)
 
 
 @pytest.fixture(scope="module")
 def start(problem):
     rng = np.random.default_rng(4)
-    x = problem.start.copy()
+    x = problem.search.start.copy()
     x[problem.unknowns.shape] += 0.2 * rng.standard_normal(problem.unknowns.n_coefficients)
     x[problem.unknowns.rotation] += [0.1, -0.2, 0.05]
     return x
@@ -67,10 +67,10 @@ def test_the_gauss_newton_matrix_has_no_coupling_with_the_pose_left(problem, los
 
 
 def test_the_minimum_is_the_same_and_found_in_fewer_steps(problem, loss):
-    options = {"bounds": problem.bounds, "tolerance": 1e-13}
-    plain = nlopt_minimize(loss, problem.start, scale=1 / np.sqrt(loss.curvature(problem.start)), **options)
-    decoupled = decoupled_pose(loss, problem.start)
-    quick = nlopt_minimize(decoupled, problem.start, scale=1 / np.sqrt(decoupled.curvature), **options)
+    options, start = {"bounds": problem.search.bounds, "tolerance": 1e-13}, problem.search.start
+    plain = nlopt_minimize(loss, start, scale=1 / np.sqrt(loss.curvature(start)), **options)
+    decoupled = decoupled_pose(loss, start)
+    quick = nlopt_minimize(decoupled, start, scale=1 / np.sqrt(decoupled.curvature), **options)
     assert quick.value == pytest.approx(plain.value, rel=1e-6)
     assert quick.evaluations < 0.8 * plain.evaluations
     found = (m[problem.unknowns.shape] for m in (decoupled.x(quick.x), plain.x))

@@ -23,8 +23,8 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
     if len(problems) == 1:
         return [problems[0].solve(algorithm)]
     options = problems[0].options
-    placements = [problem.placement(problem.start) for problem in problems]
-    parts = [problem.start for problem in problems]
+    placements = [problem.placement(problem.search.start) for problem in problems]
+    parts = [problem.search.start for problem in problems]
     passes = evaluations = 0
     while passes < options.solver.max_passes:
         loss = JointLoss(
@@ -38,7 +38,7 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
             loss,
             x,
             bounds=(
-                loss.joined([problem.bounds[0] for problem in problems]),
+                loss.joined([problem.search.bounds[0] for problem in problems]),
                 loss.joined([placed.upper for placed in placements]),
             ),
             scale=1 / np.sqrt(loss.curvature(x)),
