@@ -9,11 +9,11 @@ import numpy as np
 from toongeo.geometry import DeformationTransfer
 from toongeo.geometry.source_motion import SourceMotion, source_motion
 from toongeo.model import MorphableModel
-from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.feature_gains import feature_gains
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.split_gaze import split_gaze
 
 __all__ = ["AT_ONCE", "build_rig"]
 
@@ -57,17 +57,13 @@ def build_rig(face: AlignedFace, *, gain: float | Literal["auto"] = 1.0) -> Rig:
             f" got {face.vertices.shape}; another mesh has to be registered first"
         )
     deltas = _transferred(face, gain) if model.n_named else np.zeros((0, *face.vertices.shape), np.float32)
-    gaze = np.zeros((len(GAZE_NAMES), *face.vertices.shape), np.float32)
-    own = [k for k, name in enumerate(model.expression_names[: model.n_named]) if name not in GAZE_NAMES]
-    for k, name in enumerate(GAZE_NAMES):
-        if model.has(name):
-            gaze[k] = deltas[model.expression_index(name)]
+    names, deltas, gaze = split_gaze(model.expression_names[: model.n_named], deltas)
     return Rig(
-        names=tuple(model.expression_names[k] for k in own),
+        names=names,
         neutral=face.vertices,
-        deltas=deltas if len(own) == len(deltas) else deltas[own],
+        deltas=deltas,
         gaze=gaze,
-        pose=np.zeros(len(own)),
+        pose=np.zeros(len(names)),
         report={"seconds": time.perf_counter() - started},
     )
 

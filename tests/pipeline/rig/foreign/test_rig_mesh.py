@@ -169,6 +169,12 @@ def test_bad_input_is_named(model, change, message):
         rig_mesh(**arguments)
 
 
+def test_a_model_without_expressions_is_refused(model):
+    still = dataclasses.replace(model, n_named=0)
+    with pytest.raises(ValueError, match="model: expected one with named expressions, got one without"):
+        rig_mesh(model.mean, model.faces, model.landmarks, model=still)
+
+
 def test_a_head_that_is_inside_out_is_refused(model, monkeypatch):
     front = model.faces[model.region("face")[model.faces].all(1)]
     monkeypatch.setattr("toongeo.pipeline.rig.foreign.rig_mesh.register_face", pytest.fail)  # before the long part
