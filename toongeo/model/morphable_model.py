@@ -60,7 +60,7 @@ class MorphableModel:
     mirror : (n,) int64
         The vertex on the other side of the plane x = 0; unless it is given, the one nearest to there.
     uv : (t, 2) float64, origin bottom left
-        None: textures lie on a cylinder about the head (:func:`toongeo.model.atlas_coordinates`).
+        None: longitude and latitude stand in (:func:`toongeo.model.atlas_coordinates`).
     uv_faces : (m, 3) int64
     eyes : left and right eyeball, or none
     prior : FacePrior or None
