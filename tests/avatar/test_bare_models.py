@@ -153,11 +153,12 @@ def test_each_part_is_missed_for_itself(model):
     assert len(missing_parts(replace(model, n_named=0))) == 2
 
 
-@pytest.mark.parametrize("part", ["sockets", "named"])
+@pytest.mark.parametrize("part", ["sockets", "named", "cavity"])
 def test_a_head_without_one_part_keeps_the_others(model, cartoon, part):
     changes = {
         "sockets": {"regions": {name: mask for name, mask in model.regions.items() if "socket" not in name}},
         "named": {"n_named": 0},
+        "cavity": {"regions": {name: mask for name, mask in model.regions.items() if name != "mouth_cavity"}},
     }
     avatar = make_avatar(*cartoon("bad_guy"), model=replace(model, **changes[part]), texture_size=64)
     assert len(avatar.report.warnings) in (1, 2) and len(avatar.surfaces()) == 3
