@@ -33,6 +33,7 @@ from pictures import FOLDER, pictures, roles
 
 from toongeo import read_image, read_landmarks
 from toongeo.model.loaders.load_eos import load_eos
+from toongeo.pipeline import JawOptions, PriorOptions, SolverOptions
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 
@@ -40,10 +41,12 @@ HERE = Path(__file__).parent
 SHAPE, TABLE, EXPRESSION = "sfm_shape_3448.bin", "ibug_to_sfm.txt", "expression_blendshapes_3448.bin"
 # One pass, since no jaw point slides; a box that is never reached; every point alike; all but no prior on expressions.
 SAME_PROBLEM = FitOptions(
-    robust=None, max_passes=1, jaw_weight=1.0, jaw_tangent=1.0, max_deviation=50.0, expression_weight=1e-4,
-    tolerance=1e-12,
-)  # fmt: skip
-WITH_OUTLINE = replace(SAME_PROBLEM, jaw_tangent=0.0)
+    robust=None,
+    solver=SolverOptions(max_passes=1, tolerance=1e-12),
+    jaw=JawOptions(weight=1.0, tangent=1.0),
+    prior=PriorOptions(max_deviation=50.0, expression_weight=1e-4),
+)
+WITH_OUTLINE = replace(SAME_PROBLEM, jaw=JawOptions(weight=1.0, tangent=0.0))
 OUTLINE = np.array([*range(8), *range(9, 17)])  # point 8, the chin, has a vertex in eos's table
 LEAST_WEIGHT, GREATEST_WEIGHT = 1e-10, 1.0
 BORDER_PX = 800.0  # size at which the border of a face is drawn

@@ -20,11 +20,11 @@ from toongeo.caricature.caricature_options import CaricatureOptions
 from toongeo.caricature.fit_caricature import fit_caricature
 from toongeo.caricature.space.deformation_representation import deformation_representation
 from toongeo.caricature.space.face_space import FaceSpace
-from toongeo.io.landmark_array import landmark_array
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.anatomy.visible_landmarks import landmarks_seen
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.protocols import HeadCamera, LandmarkMapper
 from toongeo.render.camera import ScaledOrthographicCamera
 
@@ -67,7 +67,7 @@ class InitialBlendshapes:
 
 
 def initial_blendshapes(
-    source: CaricatureFit, landmarks: ArrayLike, *, mapper: LandmarkMapper | None = None
+    source: CaricatureFit, landmarks: ArrayLike, *, mapper: LandmarkMapper | None = None, scheme: str = "ibug68"
 ) -> InitialBlendshapes:
     """Neutral face and named expressions of a caricature, one reconstruction each (Eq. 2-3).
 
@@ -83,6 +83,8 @@ def initial_blendshapes(
         NaN rows are missing.
     mapper : LandmarkMapper, optional
         `PartMapper` of the source's model if None.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -93,7 +95,7 @@ def initial_blendshapes(
     ValueError
         If the landmarks are malformed, or the mapper gives something else than 68 finite points.
     """
-    drawn = landmark_array(landmarks)
+    drawn = ibug_landmarks(landmarks, scheme)
     mapper = PartMapper(source.model) if mapper is None else mapper
     points, context = mapper.to_normal(drawn)
     points = _checked(points, "to_normal")

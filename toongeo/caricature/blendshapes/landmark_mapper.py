@@ -19,6 +19,7 @@ from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS, PARTS
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline import PriorOptions
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
@@ -26,7 +27,7 @@ from toongeo.pipeline.fit.fit_options import FitOptions
 __all__ = ["Exaggeration", "PartMapper"]
 
 # A face as exaggerated as the drawing asks for: a large identity is cheap, a misfit is not.
-_FREE = FitOptions(max_deviation=12.0, identity_weight=0.05, expression_weight=4.0, prior_weight=1e-6)
+_FREE = FitOptions(prior_weight=1e-6, prior=PriorOptions(max_deviation=12.0, identity_weight=0.05))
 _SPREAD = 2.0  # standard deviation of the identities of caricatures
 _STIFFNESS = 0.3  # pulls a part's affine frame towards a similarity
 _CHIN = 4.0  # jaw points from the chin over which the jaw follows the mouth

@@ -31,9 +31,11 @@ def straighten_teeth(model: MorphableModel, before: np.ndarray, after: np.ndarra
     Returns
     -------
     (n, 3) float64
-        ``after``, with teeth and tongue straightened.
+        ``after``, with teeth and tongue straightened, as far as the model has them.
     """
     inside = np.any([model.region(name) for name in PARTS], axis=0)
+    if not inside.any():
+        return after
     centre, arrived = before[inside].mean(0), after[inside].mean(0)
     linear, *_ = np.linalg.lstsq(before[inside] - centre, after[inside] - arrived, rcond=None)
     U, stretches, Vt = np.linalg.svd(linear)

@@ -8,11 +8,12 @@ from tests.conftest import CARTOONS
 from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.metrics import mesh_quality
 from toongeo.model.anatomy.lip_line import lip_line
+from toongeo.model.anatomy.parts import TEETH_AND_TONGUE as PARTS
 from toongeo.model.expression_weights import preset
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_mouth
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
 from toongeo.pipeline.rig.mouth.close_slit import close_slit
-from toongeo.pipeline.rig.mouth.hang_teeth import PARTS, hang_teeth
+from toongeo.pipeline.rig.mouth.hang_teeth import hang_teeth
 from toongeo.pipeline.rig.mouth.seal_lips import GAP, _heights, _up, seal_lips
 from toongeo.render import ScaledOrthographicCamera, rasterize
 

@@ -19,6 +19,7 @@ from toongeo.pipeline.rig.rig import Rig
 
 __all__ = ["hang_teeth"]
 
+_NEEDS = (*TEETH_AND_TONGUE, "mouth_cavity", "jaw", "jawOpen", "mouthClose")
 _STILL_MM = 0.05  # on the template: what an expression moves less than this it holds still
 _NEAR_MM = 60.0  # on the template: skin that teeth could come through lies so near to the lips
 _EVERY = 4  # every so manieth vertex of teeth and tongue is looked at first
@@ -46,8 +47,10 @@ def hang_teeth(face: AlignedFace, rig: Rig) -> Rig:
     Returns
     -------
     Rig
-        A new one; only teeth and tongue differ.
+        A new one; only teeth and tongue differ. The same, if the model lacks one of these parts.
     """
+    if not face.model.has(*_NEEDS):
+        return rig
     started = time.perf_counter()
     neutral, deltas = rig.neutral.copy(), rig.deltas.copy()
     _follow_chin(face.model, rig.names, deltas)
