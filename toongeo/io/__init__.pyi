@@ -7,6 +7,8 @@ from toongeo.io.encode_glb import encode_glb as encode_glb
 from toongeo.io.encode_image import encode_image as encode_image
 from toongeo.io.glb_scene import glb_scene as glb_scene
 from toongeo.io.landmark_array import landmark_array as landmark_array
+from toongeo.io.landmarks.landmark_schemes import SCHEMES as SCHEMES
+from toongeo.io.landmarks.landmark_schemes import ibug_points as ibug_points
 from toongeo.io.page_html import page_html as page_html
 from toongeo.io.readers.read_glb import GlbDocument as GlbDocument
 from toongeo.io.readers.read_glb import read_glb as read_glb
