@@ -13,6 +13,8 @@ from toongeo.io.page_html import page_html as page_html
 from toongeo.io.readers.read_glb import GlbDocument as GlbDocument
 from toongeo.io.readers.read_glb import read_glb as read_glb
 from toongeo.io.readers.read_image import read_image as read_image
+from toongeo.io.readers.read_landmark_file import LandmarkFile as LandmarkFile
+from toongeo.io.readers.read_landmark_file import read_landmark_file as read_landmark_file
 from toongeo.io.readers.read_landmarks import read_landmarks as read_landmarks
 from toongeo.io.readers.read_mesh_landmarks import read_mesh_landmarks as read_mesh_landmarks
 from toongeo.io.readers.read_obj import ObjData as ObjData

@@ -105,7 +105,7 @@ def _table(scheme: str) -> tuple[NDArray[np.int64], NDArray[np.int64], _Floats]:
         order = order + _BODY_AND_FEET
     elif scheme == "mediapipe478":
         order = np.array([int(row["vertex"]) for row in _rows("mediapipe478.csv")])
-    elif scheme != "openpose70":
+    elif scheme not in ("ibug68", "openpose70"):
         cells = [row[scheme].split() for row in _rows("landmark_schemes.csv")]
         share = np.array([float(Fraction(cell[2])) if len(cell) == 3 else 0.0 for cell in cells])
         return np.array([int(cell[0]) for cell in cells]), np.array([int(cell[:2][-1]) for cell in cells]), share

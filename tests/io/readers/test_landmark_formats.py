@@ -1,0 +1,415 @@
+"""Landmark files of other programs, each in the exact layout that the program writes."""
+
+import json
+
+import numpy as np
+import pytest
+
+from toongeo.io import SCHEMES, ibug_points, read_landmark_file, read_landmarks, write_landmarks
+from toongeo.io.landmarks.frontal_layout import frontal_layout
+from toongeo.io.landmarks.landmark_schemes import _table, scheme_of
+
+SIZE = (640, 480)
+FACE = np.round(320 + 200 * frontal_layout().points, 3)  # of three decimals, as most programs write
+
+
+def scheme_points(scheme):
+    """A face (k, 2) in another scheme: points stand where the table makes the 68 of them, the others at the eyes."""
+    points = np.full((SCHEMES[scheme][0], 2), 320.0)
+    first, second, share = _table(scheme)
+    for k in np.flatnonzero(first >= 0):
+        points[first[k]] = FACE[k]
+    for middle in np.unique(second[share > 0]):  # of a lid, between two of the 68
+        pair = np.flatnonzero((second == middle) & (share > 0))
+        points[middle] = FACE[pair].mean(axis=0)
+        points[first[pair]] = (3 * FACE[pair] - points[middle]) / 2
+    return points
+
+
+def openface_video(faces):
+    heading = "frame, face_id, timestamp, confidence, success, gaze_0_x, " + ", ".join(
+        f"{axis}_{k}" for axis in ("x", "y", "X", "Y", "Z") for k in range(68)
+    )
+    rows = []
+    for frame, face_id, success, points in faces:
+        numbers = [*points[:, 0], *points[:, 1], *np.zeros(3 * 68)]
+        rows.append(
+            f"{frame}, {face_id}, {frame / 30:.3f}, 0.980, {success}, 0.1, " + ", ".join(f"{x:.3f}" for x in numbers)
+        )
+    return "\n".join([heading, *rows]) + "\n"
+
+
+def openface_picture(faces):
+    heading = "face, confidence, gaze_0_x, " + ", ".join(f"{axis}_{k}" for axis in ("x", "y") for k in range(68))
+    rows = [f"{k}, 0.9, 0.1, " + ", ".join(map(str, [*points[:, 0], *points[:, 1]])) for k, points in enumerate(faces)]
+    return "\n".join([heading, *rows]) + "\n"
+
+
+def imglab(images):
+    boxes = lambda faces: "".join(  # noqa: E731
+        "    <box top='90' left='74' width='31' height='31'>\n"
+        + "".join(f"      <part name='{k:02d}' x='{x}' y='{y}'/>\n" for k, (x, y) in enumerate(points) if x == x)
+        + "    </box>\n"
+        for points in faces
+    )
+    body = "".join(
+        f"  <image file='{k}.jpg' width='640' height='480'>\n{boxes(faces)}  </image>\n"
+        for k, faces in enumerate(images)
+    )
+    return (
+        "<?xml version='1.0' encoding='ISO-8859-1'?>\n"
+        "<?xml-stylesheet type='text/xsl' href='image_metadata_stylesheet.xsl'?>\n"
+        "<dataset>\n<name>imglab dataset</name>\n<comment>Created by imglab tool.</comment>\n"
+        f"<images>\n{body}</images>\n</dataset>"
+    )
+
+
+def pts(points, newline="\n"):
+    rows = newline.join(f"{x:.6f} {y:.6f}" for x, y in points + 1)
+    return newline.join(["version: 1", f"n_points:  {len(points)}", "{", rows, "}", ""])
+
+
+def shares(points):
+    return (points + 0.5) / SIZE
+
+
+def landmark_objects(points):
+    """MediaPipe's normalized landmarks."""
+    return [{"x": x, "y": y, "z": -0.01, "visibility": 0.0, "presence": 0.0} for x, y in shares(points).tolist()]
+
+
+def triples(points, score=0.9):
+    return [number for x, y in points.tolist() for number in (x, y, score)]
+
+
+def lines(points, form="{} {}"):
+    return "".join(form.format(*row) + "\n" for row in points.tolist())
+
+
+MESH = scheme_points("mediapipe478")
+BODY = scheme_points("wholebody133")
+WFLW = scheme_points("wflw98")
+YX = FACE[:, ::-1].tolist()
+
+TEXTS = {
+    "ibug.pts": (pts(FACE), "ibug68"),
+    "windows.pts": (pts(FACE, "\r\n"), "ibug68"),
+    "menpo.pts": (
+        "version: 1\nn_points: 68\n{\n" + "\n".join(f"{x:.3f} {y:.3f}" for x, y in FACE + 1) + "\n}",
+        "ibug68",
+    ),
+    "inner.pts": (pts(FACE[17:]), "ibug51"),
+    "plain.txt": (lines(FACE), "ibug68"),
+    "dlib_points.txt": (lines(FACE, "({}, {})"), "ibug68"),
+    "dlib_parts.txt": ("".join(f"{k} ({x}, {y})\n" for k, (x, y) in enumerate(FACE.tolist())), "ibug68"),
+    "numbered.txt": ("".join(f"{k + 1}\t{x}\t{y}\t0.5\n" for k, (x, y) in enumerate(FACE.tolist())), "ibug68"),
+    "depth.csv": ("x,y,z\n" + "".join(f"{x},{y},-3.5\n" for x, y in FACE.tolist()), "ibug68"),
+    "pandas.csv": (",x,y,z\n" + "".join(f"{k},{x},{y},0.1\n" for k, (x, y) in enumerate(FACE.tolist())), "ibug68"),
+    "mediapipe.csv": (
+        "index,x,y,z\n" + "".join(f"{k},{x},{y},0.1\n" for k, (x, y) in enumerate(shares(MESH).tolist())),
+        "mediapipe478",
+    ),
+    "openface.csv": (openface_video([(1, 0, 1, FACE)]), "ibug68"),
+    "openface_picture.csv": (openface_picture([FACE, FACE + 9]), "ibug68"),
+    "wide.csv": (
+        ",".join(f"{axis}{k}" for k in range(68) for axis in "xy") + "\n" + ",".join(map(str, FACE.ravel())),
+        "ibug68",
+    ),
+    "wflw.txt": (
+        " ".join(map(str, WFLW.ravel())) + " 182 268 283 396 0 0 0 0 1 0 37--Soccer/37_Soccer_soccer_ball_37_907.jpg\n",
+        "wflw98",
+    ),
+    "lapa.txt": ("106\n" + lines(scheme_points("lapa106")), "lapa106"),
+    "imglab.xml": (imglab([[FACE], []]), "ibug68"),
+    "list.json": (json.dumps(FACE.tolist()), "ibug68"),
+    "object.json": (json.dumps({"landmarks": FACE.tolist(), "image": "a.png"}), "ibug68"),
+    "numbers.json": (json.dumps({str(k): point for k, point in enumerate(FACE.tolist())}), "ibug68"),
+    "columns.json": (json.dumps({"x": FACE[:, 0].tolist(), "y": FACE[:, 1].tolist()}), "ibug68"),
+    "flat.json": (json.dumps(FACE.ravel().tolist()), "ibug68"),
+    "face_alignment.json": (json.dumps([FACE.tolist(), (FACE + 5).tolist()]), "ibug68"),
+    "mediapipe_js.json": (
+        json.dumps(
+            {"faceLandmarks": [landmark_objects(MESH)], "faceBlendshapes": [], "facialTransformationMatrixes": []}
+        ),
+        "mediapipe478",
+    ),
+    "mediapipe_python.json": (
+        json.dumps({"face_landmarks": [landmark_objects(MESH[:468])], "face_blendshapes": []}),
+        "mediapipe478",
+    ),
+    "mediapipe_legacy.json": (json.dumps([{"landmark": landmark_objects(MESH)}]), "mediapipe478"),
+    "coco.json": (
+        json.dumps(
+            {
+                "images": [{"id": 7, "file_name": "a.jpg", "width": 640, "height": 480}],
+                "annotations": [
+                    {"image_id": 7, "bbox": [1, 2, 3, 4], "keypoints": 51 * [0], "face_kpts": triples(FACE)}
+                ],
+            }
+        ),
+        "ibug68",
+    ),
+    "mmpose.json": (
+        json.dumps([{"keypoints": BODY.tolist(), "keypoint_scores": 133 * [0.9], "bbox": [[1.0, 2.0, 3.0, 4.0]]}]),
+        "wholebody133",
+    ),
+    "mmpose_video.json": (
+        json.dumps({"meta_info": {}, "instance_info": [{"frame_id": 1, "instances": [{"keypoints": BODY.tolist()}]}]}),
+        "wholebody133",
+    ),
+    "openpose.json": (
+        json.dumps(
+            {
+                "version": 1.3,
+                "people": [
+                    {"pose_keypoints_2d": 75 * [0.5], "face_keypoints_2d": triples(np.vstack([FACE, [[1, 2], [3, 4]]]))}
+                ],
+            }
+        ),
+        "openpose70",
+    ),
+    "landmarker1.ljson": (
+        json.dumps(
+            {
+                "version": 1,
+                "groups": [
+                    {"label": "jaw", "landmarks": [{"point": p} for p in YX[:17]]},
+                    {"label": "inner", "landmarks": [{"point": p} for p in YX[17:]]},
+                ],
+            }
+        ),
+        "ibug68",
+    ),
+    "landmarker2.ljson": (
+        json.dumps(
+            {
+                "version": 2,
+                "labels": [{"label": "jaw", "mask": list(range(17))}],
+                "landmarks": {"points": YX, "connectivity": [[0, 1]]},
+            }
+        ),
+        "ibug68",
+    ),
+    "menpo3.ljson": (
+        json.dumps({"version": 3, "groups": {"PTS": {"labels": [], "landmarks": {"points": YX, "connectivity": []}}}}),
+        "ibug68",
+    ),
+    "menpo3.json": (
+        json.dumps({"version": 3, "groups": {"PTS": {"labels": [], "landmarks": {"points": YX}}}}),
+        "ibug68",
+    ),
+}
+ARRAYS = {
+    "points.npy": (FACE, "ibug68"),
+    "face_alignment.npy": (FACE[None], "ibug68"),
+    "face_alignment_3d.npy": (np.dstack([FACE[None], np.ones((1, 68, 1))]).astype(np.float64), "ibug68"),
+    "mediapipe.npy": (shares(MESH), "mediapipe478"),
+    "mediapipe_3d.npy": (np.c_[shares(MESH[:468]), np.full(468, -0.02)], "mediapipe478"),
+    "wholebody.npy": (np.c_[BODY, np.full(133, 0.8)], "wholebody133"),
+    "frames.npy": (np.stack([FACE[None], FACE[None] + 1]), "ibug68"),
+} | {f"{scheme}.npy": (scheme_points(scheme), scheme) for scheme in SCHEMES}
+
+
+@pytest.fixture
+def written(tmp_path):
+    def write(name, content):
+        path = tmp_path / name
+        if isinstance(content, str):
+            path.write_bytes(content.encode())
+        else:
+            np.save(path, content)
+        return path
+
+    return write
+
+
+@pytest.mark.parametrize("name", [*TEXTS, *ARRAYS])
+def test_each_format_gives_the_68_points(written, name):
+    content, scheme = (TEXTS | ARRAYS)[name]
+    found = read_landmark_file(written(name, content), size=SIZE)
+    assert found.scheme == scheme and found.points.shape == (68, 2)
+    missing = {"ibug51": range(17), "ibug49": [*range(17), 60, 64]}.get(scheme, ())
+    expected = FACE.copy()
+    expected[list(missing)] = np.nan
+    np.testing.assert_allclose(found.points, expected, atol=1e-6)
+    assert name in found.message and scheme in found.message
+    assert not found.points.flags.writeable
+    np.testing.assert_array_equal(read_landmarks(written(name, content), size=SIZE, scheme=scheme), found.points)
+
+
+@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_byte_order_marks_change_nothing(tmp_path, name, encoding):
+    path = tmp_path / name
+    path.write_bytes(
+        TEXTS[name][0].replace("ISO-8859-1", encoding[:-4] if "sig" in encoding else encoding).encode(encoding)
+    )
+    np.testing.assert_allclose(read_landmarks(path, size=SIZE), read_landmarks_of(tmp_path, name), atol=1e-9)
+
+
+def read_landmarks_of(folder, name):
+    path = folder / f"plain_{name}"
+    path.write_bytes(TEXTS[name][0].encode())
+    return read_landmarks(path, size=SIZE)
+
+
+@pytest.mark.parametrize("suffix", [".pts", ".txt", ".csv", ".npy", ".json", ".ljson"])
+def test_what_is_written_is_read_back(tmp_path, suffix):
+    points = FACE + np.random.default_rng(1).normal(size=(68, 2)) / 3
+    points[[3, 60]] = np.nan
+    path = tmp_path / f"face{suffix}"
+    write_landmarks(path, points)
+    np.testing.assert_array_equal(read_landmarks(path), points)
+    assert read_landmark_file(path).scheme == "ibug68"
+
+
+def test_ljson_has_the_layout_of_landmarker_io(tmp_path):
+    points = FACE.copy()
+    points[5] = np.nan
+    write_landmarks(tmp_path / "a.ljson", points)
+    document = json.loads((tmp_path / "a.ljson").read_text())
+    assert document["version"] == 2 and document["landmarks"]["points"][5] == [None, None]
+    assert document["landmarks"]["points"][0] == FACE[0, ::-1].tolist()
+    assert sorted(k for label in document["labels"] for k in label["mask"]) == list(range(68))
+
+
+def test_ljson_by_x_and_y_is_seen(written):
+    document = {"version": 2, "labels": [], "landmarks": {"points": FACE.tolist(), "connectivity": []}}
+    found = read_landmark_file(written("a.ljson", json.dumps(document)))
+    np.testing.assert_array_equal(found.points, FACE)
+    assert "as (x, y)" in found.message
+
+
+def test_missing_points(written):
+    holed = FACE.copy()
+    holed[[0, 20]] = np.nan
+    rows = [None if x != x else [x, y] for x, y in holed.tolist()]
+    cases = {
+        "a.json": json.dumps(rows),
+        "b.json": json.dumps([point or [None, None] for point in rows]),
+        "c.json": json.dumps({str(k): point for k, point in enumerate(rows) if point}),
+        "d.json": json.dumps(holed.tolist()),  # NaN, as Python writes it
+        "a.ljson": json.dumps(
+            {"version": 2, "labels": [], "landmarks": {"points": [p[::-1] if p else [None, None] for p in rows]}}
+        ),
+        "a.csv": "x,y\n" + lines(holed, "{},{}").replace("nan", ""),
+        "b.csv": "x,y\n" + lines(holed, "{},{}").replace("nan", "NA"),
+        "a.txt": lines(holed).replace("nan", "-1.#IND"),
+        "b.txt": lines(holed).replace("nan", "-nan(ind)"),
+        "a.xml": imglab([[holed]]),
+        "coco.json": json.dumps({"annotations": [{"face_kpts": triples(np.nan_to_num(holed)), "image_id": 1}]}).replace(
+            "0.0, 0.0, 0.9", "0, 0, 0"
+        ),
+        "a.npy": np.c_[np.nan_to_num(holed), np.isfinite(holed[:, 0])],
+    }
+    for name, content in cases.items():
+        np.testing.assert_array_equal(read_landmarks(written(name, content)), holed, err_msg=name)
+
+
+def test_faces_and_frames_are_chosen(written):
+    faces = [FACE, FACE + 7, FACE + 11]
+    several = {
+        "a.npy": np.stack(faces),
+        "a.json": json.dumps([face.tolist() for face in faces]),
+        "people.json": json.dumps(
+            {"people": [{"face_keypoints_2d": triples(np.vstack([face, face[:2]]))} for face in faces]}
+        ),
+        "a.csv": openface_picture(faces),
+        "a.xml": imglab([faces]),
+        "video.csv": openface_video([(1, k, 1, face) for k, face in enumerate(faces)]),
+        "a.ljson": json.dumps(
+            {
+                "version": 3,
+                "groups": {str(k): {"landmarks": {"points": f[:, ::-1].tolist()}} for k, f in enumerate(faces)},
+            }
+        ),
+    }
+    for name, content in several.items():
+        path = written(name, content)
+        for k, face in enumerate(faces):
+            found = read_landmark_file(path, face=k)
+            np.testing.assert_allclose(found.points, face, atol=1e-3, err_msg=name)
+            assert (found.face, found.faces, found.frames) == (k, 3, 1) and f"face {k} of 3" in found.message
+        with pytest.raises(ValueError, match=rf"face: expected 0\.\.2 for .*{name}, got 3"):
+            read_landmarks(path, face=3)
+    # The first frame has no face.
+    video = {
+        "a.xml": imglab([[], [FACE], [FACE + 7, FACE + 11]]),
+        "v.csv": openface_video([(1, 0, 0, FACE * 0), (2, 0, 1, FACE), (3, 0, 1, FACE + 7), (3, 1, 1, FACE + 11)]),
+        "v.json": json.dumps([[], [FACE.tolist()], [(FACE + 7).tolist(), (FACE + 11).tolist()]]),
+        "take.json": json.dumps(
+            {"frames": [{"faces": face} for face in ([], [FACE.tolist()], (np.stack(faces[1:])).tolist())]}
+        ),
+        "mm.json": json.dumps(
+            {
+                "instance_info": [
+                    {"instances": [{"keypoints": f.tolist()} for f in some]} for some in ([], faces[:1], faces[1:])
+                ]
+            }
+        ),
+    }
+    for name, content in video.items():
+        path = written(name, content)
+        found = read_landmark_file(path)
+        np.testing.assert_allclose(found.points, FACE, atol=1e-3, err_msg=name)
+        assert (found.frame, found.frames, found.faces) == (1, 3, 1), name
+        np.testing.assert_allclose(read_landmarks(path, frame=2, face=1), FACE + 11, atol=1e-3, err_msg=name)
+        with pytest.raises(ValueError, match="frame: expected one with a face, but 0 has none in"):
+            read_landmarks(path, frame=0)
+        with pytest.raises(ValueError, match=r"frame: expected 0\.\.2 for .*, got -1"):
+            read_landmarks(path, frame=-1)
+
+
+def test_shares_of_the_picture_need_its_size(written):
+    path = written("a.npy", shares(MESH))
+    with pytest.raises(ValueError, match="size: landmarks in .*a.npy are shares of the picture; expected its"):
+        read_landmarks(path)
+    picture = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    np.testing.assert_allclose(read_landmarks(path, size=picture), FACE, atol=1e-9)
+    assert "shares of a picture of 640 x 480 px" in read_landmark_file(path, size=picture).message
+    for size, message in (
+        ((0, 5), r"size: expected \(width, height\) > 0 px, got \(0, 5\)"),
+        ((1, 2, 3), r"size: expected \(width, height\) px or a picture, got \(1, 2, 3\)"),
+        ("ab", r"size: expected \(width, height\) px or a picture, got 'ab'"),
+        ((np.inf, 5), r"size: expected \(width, height\) px or a picture"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            read_landmarks(path, size=size)
+    # Points in pixels need none, and do not mind one.
+    np.testing.assert_array_equal(read_landmarks(written("b.npy", MESH), size=SIZE), FACE)
+
+
+def test_tables_take_points_where_the_layouts_have_them():
+    """Mirroring a face in a scheme of its own, after the published pairs, is mirroring the 68."""
+    mirror = frontal_layout().mirror
+    pairs = {  # of WFLW's and LaPa's annotations
+        "wflw98": [*range(32, -1, -1), *range(46, 41, -1), *range(50, 46, -1), *range(37, 32, -1), *range(41, 37, -1)]
+        + [*range(51, 55), *range(59, 54, -1), 72, 71, 70, 69, 68, 75, 74, 73, 64, 63, 62, 61, 60, 67, 66, 65]
+        + [*range(82, 75, -1), *range(87, 82, -1), *range(92, 87, -1), *range(95, 92, -1), 97, 96],
+        "lapa106": [*range(32, -1, -1), *range(46, 41, -1), *range(50, 46, -1), *range(37, 32, -1), *range(41, 37, -1)]
+        + [*range(51, 55), *range(65, 54, -1), 79, 78, 77, 76, 75, 82, 81, 80, 83, 70, 69, 68, 67, 66, 73, 72, 71, 74]
+        + [*range(90, 83, -1), *range(95, 90, -1), *range(100, 95, -1), *range(103, 100, -1), 105, 104],
+    }
+    for scheme, swap in pairs.items():
+        assert sorted(swap) == list(range(SCHEMES[scheme][0]))
+        points = np.random.default_rng(2).normal(size=(len(swap), 2))
+        np.testing.assert_allclose(ibug_points(points[swap], scheme), ibug_points(points, scheme)[mirror])
+
+
+@pytest.mark.parametrize("scheme", ["lapa106", "sensetime106", "insightface106"])
+@pytest.mark.parametrize("degrees", [-50, 0, 50])
+def test_of_the_orders_of_106_points_the_one_is_taken_that_forms_a_face(scheme, degrees):
+    a = np.radians(degrees)
+    points = scheme_points(scheme) @ [[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]]
+    assert scheme_of(points * [0.7, 1]) == scheme
+    assert scheme_of(points * 0) in SCHEMES
+
+
+def test_schemes_are_refused_by_name(written):
+    path = written("a.npy", FACE)
+    with pytest.raises(ValueError, match="scheme: expected 'auto' or one of 'ibug68', .*, got 'dlib'"):
+        read_landmarks(path, scheme="dlib")
+    with pytest.raises(ValueError, match=r"landmarks in .*a.npy: expected shape \(98, 2\) px for scheme 'wflw98', got"):
+        read_landmarks(path, scheme="wflw98")
+    with pytest.raises(ValueError, match="scheme: expected one of 'ibug68', .*, got 'auto'"):
+        ibug_points(FACE, "auto")
