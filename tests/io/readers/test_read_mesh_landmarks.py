@@ -56,7 +56,7 @@ POINTS = PLACES.tolist()
 
 def picked(points, names=None, active=None):
     rows = "".join(
-        f' <point active="{1 if active is None else active[k]}" x="{x}" y="{y}" z="{z}" name="{names[k] if names else k}"/>\n'
+        f' <point active="{active[k] if active else 1}" x="{x}" y="{y}" z="{z}" name="{names[k] if names else k}"/>\n'
         for k, (x, y, z) in enumerate(points)
     )
     head = '<DocumentData>\n  <DateTime time="11:02:44" date="2024-05-06"/>\n  <DataFileName name="head.obj"/>\n'
@@ -125,7 +125,7 @@ def test_missing_landmarks_of_other_programs(tmp_path):
         (
             "a.pp",
             '<PickedPoints><point x="1" y="2" z="q"/></PickedPoints>',
-            "numbers as x, y and z of a point in line 1",
+            "numbers as x, y and z of a point in line",
         ),
         ("a.pp", picked(POINTS[:5]), "got 5 entries"),
         ("a.pp", picked(POINTS).replace("Points>", 'Points [<!ENTITY a "b">]>', 1), "without entities"),
