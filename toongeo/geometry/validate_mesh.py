@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import igl
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -91,8 +92,4 @@ def validate_faces(F: ArrayLike, n: int, *, name: str = "F") -> NDArray[np.int64
 
 def degenerate_triangles(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArray[np.bool_]:
     """Mask (m,) of the triangles whose normal is lost in rounding. Scale-free; expects checked arrays."""
-    a, b, c = V[F[:, 0]], V[F[:, 1]], V[F[:, 2]]
-    twice_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    sides = np.stack([b - a, c - b, a - c], axis=1)
-    longest = np.einsum("fij,fij->fi", sides, sides).max(axis=1)
-    return twice_area <= DEGENERATE * longest
+    return np.asarray(igl.doublearea(V, F) <= DEGENERATE * igl.squared_edge_lengths(V, F).max(axis=1))

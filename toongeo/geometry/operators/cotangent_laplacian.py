@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import igl
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry.operators.cross import cross
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import degenerate_triangles, validate_mesh
 
 __all__ = ["cotangent_laplacian"]
 
@@ -16,7 +16,7 @@ def cotangent_laplacian(V: ArrayLike, F: ArrayLike, *, clamp: float | None = Non
     """Positive semi-definite cotangent Laplacian: ``x^T C x = integral |grad x|^2``.
 
     Off-diagonal ``C_ij = -w_ij`` with ``w_ij = (cot a_ij + cot b_ij) / 2`` of the angles that face the
-    edge; the diagonal makes every row sum to zero. (libigl's ``cotmatrix`` has the other sign.)
+    edge; the diagonal makes every row sum to zero. It is built by libigl's ``cotmatrix``, which has the other sign.
 
     Parameters
     ----------
@@ -52,30 +52,43 @@ def cotangent_laplacian(V: ArrayLike, F: ArrayLike, *, clamp: float | None = Non
     if clamp is not None and not 0 < clamp <= 1:
         raise ValueError(f"clamp: expected a number in (0, 1] or None, got {clamp}")
     V, F = validate_mesh(V, F, nondegenerate=clamp is None)
-    n = len(V)
-    W = _edge_weights(V, F, n)
-    if clamp is not None:
-        W.data = np.clip(W.data, clamp, 1 / clamp)
-    return sp.csr_matrix(sp.diags_array(W.sum(axis=1).A1) - W)
+    if clamp is None:
+        return _rows(-igl.cotmatrix(V, F))
+    # One triangle without area would turn libigl's matrix into NaN.
+    flat = degenerate_triangles(V, F)
+    C = _rows(-igl.cotmatrix(V, F[~flat]) if not flat.all() else sp.csc_matrix((len(V), len(V))))
+    return _clamped(_with_flat(C, V, F[flat]) if flat.any() else C, clamp)
 
 
-def _edge_weights(V: NDArray[np.float64], F: NDArray[np.int64], n: int) -> sp.csr_matrix:
-    """Symmetric (n, n) matrix of the half sums of cotangents, every edge stored even where they cancel."""
+def _rows(C: sp.csc_matrix) -> sp.csr_matrix:
+    """A symmetric matrix by rows, without a copy."""
+    return sp.csr_matrix((C.data, C.indices, C.indptr), shape=C.shape)
+
+
+def _clamped(C: sp.csr_matrix, clamp: float) -> sp.csr_matrix:
+    """The same edges with weights within bounds, and the diagonal that belongs to them."""
+    row = np.repeat(np.arange(C.shape[0]), np.diff(C.indptr))
+    edge = C.indices != row
+    weight = np.where(edge, np.clip(-C.data, clamp, 1 / clamp), 0.0)
+    diagonal = np.bincount(row, weight, minlength=C.shape[0])
+    return sp.csr_matrix((np.where(edge, -weight, diagonal[row]), C.indices, C.indptr), shape=C.shape)
+
+
+def _with_flat(C: sp.csr_matrix, V: NDArray[np.float64], F: NDArray[np.int64]) -> sp.csr_matrix:
+    """Add the edges of triangles without area; what stands on the diagonal is not looked at."""
     X, corners = np.ascontiguousarray(V.T), np.ascontiguousarray(F.T)
     x = [X[:, corner] for corner in corners]
-    rows, columns, weights = [], [], []
+    C = C.tocoo()
+    rows, columns, weights = [C.row], [C.col], [C.data]
     for k in range(3):
         tip, i, j = k, (k + 1) % 3, (k + 2) % 3
-        u, v = x[i] - x[tip], x[j] - x[tip]
-        twice_area = np.sqrt((cross(u, v) ** 2).sum(axis=0))
-        dot = (u * v).sum(axis=0)
-        # A flat angle has cotangent +-infinity, bounded here because infinities of two triangles must not
-        # cancel to NaN; coincident corners have no angle and give zero.
-        angle = twice_area > 1e-12 * np.abs(dot)
-        cotangent = np.divide(dot, twice_area, out=np.sign(dot) * 1e12, where=angle)
+        # A flat angle has cotangent +-infinity, bounded here because infinities of two triangles must not cancel to
+        # NaN; coincident corners have no angle and give zero.
+        half = 0.5e12 * np.sign(((x[i] - x[tip]) * (x[j] - x[tip])).sum(axis=0))
         edge = corners[i] != corners[j]
-        rows += [corners[i][edge], corners[j][edge]]
-        columns += [corners[j][edge], corners[i][edge]]
-        weights += [0.5 * cotangent[edge]] * 2
+        rows += [corners[i][edge], corners[j][edge], corners[i][edge]]
+        columns += [corners[j][edge], corners[i][edge], corners[i][edge]]
+        weights += [-half[edge], -half[edge], np.zeros(edge.sum())]
+    # Zeros stay, unlike in a sum of matrices: an edge whose weights cancel is one all the same.
     entries = np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))
-    return sp.csr_matrix(entries, shape=(n, n))
+    return sp.csr_matrix(entries, shape=C.shape)
