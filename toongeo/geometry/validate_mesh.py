@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+import sys
+from typing import TYPE_CHECKING, Any, TypeAlias
+
 import igl
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["degenerate_triangles", "validate_faces", "validate_mesh", "validate_vertices"]
+if TYPE_CHECKING:
+    import trimesh
+
+__all__ = ["MeshLike", "degenerate_triangles", "validate_faces", "validate_like", "validate_mesh", "validate_vertices"]
+
+MeshLike: TypeAlias = "ArrayLike | trimesh.Trimesh"  # vertices, or a mesh that stands for them and its triangles
 
 # Twice the area over the longest edge squared: the sine of the smallest angle, about. Below it, one rounding
 # error decides the normal.
@@ -14,15 +22,17 @@ DEGENERATE = 1e-12
 
 
 def validate_mesh(
-    V: ArrayLike, F: ArrayLike, *, names: tuple[str, str] = ("V", "F"), nondegenerate: bool = False
+    V: MeshLike, F: ArrayLike | None = None, *, names: tuple[str, str] = ("V", "F"), nondegenerate: bool = False
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Check a triangle mesh and give it back as float64 and int64, C-contiguous.
 
+    Every function that takes a mesh comes by here, and so takes either form of it.
+
     Parameters
     ----------
-    V : (n, 3) float
-        Vertices, any unit.
-    F : (m, 3) int
+    V : (n, 3) float, or trimesh.Trimesh
+        Vertices, any unit; or vertices and triangles in one, as they are.
+    F : (m, 3) int, or None with a Trimesh
         Triangles, 0-based, m >= 1. Vertices without a triangle are allowed.
     names
         What to call the two arrays in messages.
@@ -50,8 +60,14 @@ def validate_mesh(
     ...
     ValueError: F: expected indices in 0..2, got 3 in triangle 0
     """
-    V = validate_vertices(V, name=names[0])
-    F = validate_faces(F, len(V), name=names[1])
+    mesh = _trimesh(V)
+    if mesh is not None and F is not None:
+        raise ValueError(f"{names[1]}: expected None, since {names[0]} is a Trimesh with triangles of its own")
+    if mesh is None and F is None:
+        got = type(V).__name__
+        raise ValueError(f"{names[1]}: expected triangles, or a trimesh.Trimesh as {names[0]}, got None and {got}")
+    V = validate_vertices(V if mesh is None else mesh.vertices, name=names[0])
+    F = validate_faces(F if mesh is None else mesh.faces, len(V), name=names[1])
     if nondegenerate:
         bad = np.flatnonzero(degenerate_triangles(V, F))
         if len(bad):
@@ -62,7 +78,29 @@ def validate_mesh(
     return V, F
 
 
-def validate_vertices(V: ArrayLike, *, name: str = "V") -> NDArray[np.float64]:
+def validate_like(V: MeshLike, F: NDArray[np.int64], *, name: str = "V", like: str) -> Any:
+    """Vertices of another shape of a checked mesh `like` with triangles F: an array as it came, or those of a Trimesh.
+
+    Raises
+    ------
+    ValueError
+        If it is a Trimesh with other triangles.
+    """
+    mesh = _trimesh(V)
+    if mesh is not None and not np.array_equal(mesh.faces, F):
+        got = f"{len(mesh.faces)} others"
+        raise ValueError(f"{name}: expected a Trimesh with the {len(F)} triangles of {like}, got {got}")
+    return V if mesh is None else np.asarray(mesh.vertices)
+
+
+def _trimesh(V: object) -> Any:
+    """V if it is a Trimesh, else None."""
+    # Whoever holds a Trimesh has imported trimesh; the others need not wait for it.
+    trimesh = sys.modules.get("trimesh")
+    return V if trimesh is not None and isinstance(V, trimesh.Trimesh) else None
+
+
+def validate_vertices(V: object, *, name: str = "V") -> NDArray[np.float64]:
     """Finite (n, 3) float64 vertices, or a ValueError (see `validate_mesh`)."""
     V = np.asarray(V)
     if V.ndim != 2 or V.shape[1] != 3 or len(V) == 0 or V.dtype.kind not in "fiu":
@@ -77,7 +115,7 @@ def validate_vertices(V: ArrayLike, *, name: str = "V") -> NDArray[np.float64]:
     return V
 
 
-def validate_faces(F: ArrayLike, n: int, *, name: str = "F") -> NDArray[np.int64]:
+def validate_faces(F: object, n: int, *, name: str = "F") -> NDArray[np.int64]:
     """In-range (m, 3) int64 triangles of `n` vertices, or a ValueError (see `validate_mesh`)."""
     F = np.asarray(F)
     if F.ndim != 2 or F.shape[1] != 3 or len(F) == 0 or F.dtype.kind not in "iu":
