@@ -5,12 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
+from toongeo.app.check_output import check_output
 from toongeo.io import MESH_SUFFIXES, Scene, read_image, read_mesh, read_mesh_landmarks, write_glb
 from toongeo.io.scene import METRES
 from toongeo.pipeline import Rig, rig_mesh
 
-TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored
-UNCUT = (".obj", ".off")  # say which corners are one vertex; the others repeat vertices along seams
+__all__ = ["rig"]
+
+_TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored
+_UNCUT = (".obj", ".off")  # say which corners are one vertex; the others repeat vertices along seams
 
 
 def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = None) -> Rig:
@@ -31,12 +34,12 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     Raises
     ------
     ValueError, OSError
-        For bad input or an output that cannot be written; the output is checked before the work.
+        For bad input or an output that cannot be written or is a file that is read; the output is checked before the
+        work.
     """
     if output.suffix.lower() != ".glb":
         raise ValueError(f"output: expected a name that ends in .glb, got {output}")
-    if not output.parent.is_dir():
-        raise OSError(f"output: no folder {output.parent} to write {output.name} to")
+    check_output(output, {"mesh": mesh, "landmarks": landmarks, "texture": texture})
     if mesh.suffix.lower() not in MESH_SUFFIXES:
         raise ValueError(f"mesh: expected a name that ends in {', '.join(MESH_SUFFIXES)}, got {mesh}")
     parts = read_mesh(mesh).meshes
@@ -48,7 +51,7 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     vertices = np.vstack([part.vertices for part in parts])
     faces = np.vstack([part.faces + start for part, start in zip(parts, starts, strict=False)])
-    weld = mesh.suffix.lower() not in UNCUT
+    weld = mesh.suffix.lower() not in _UNCUT
     found = rig_mesh(vertices, faces, read_mesh_landmarks(landmarks, vertices), weld=weld)
     rigged = [
         replace(
@@ -61,7 +64,7 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
         for part, start in zip(parts, starts, strict=False)
     ]
     size = float(np.linalg.norm(np.ptp(vertices, axis=0))) / METRES
-    write_glb(output, Scene(tuple(rigged)), tolerance_mm=TOLERANCE * size)
+    write_glb(output, Scene(tuple(rigged)), tolerance_mm=_TOLERANCE * size)
     report = found.report
     print(f"{len(found.names)} expressions on {len(vertices)} vertices in {report['seconds']:.1f} s")
     print(f"{report['matched']:.1%} of the template's face found a partner, mean distance {report['distance']:.3g}")

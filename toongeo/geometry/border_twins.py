@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats, Integers
 
 __all__ = ["border_twins"]
 
 
-def border_twins(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArray[np.int64]:
+def border_twins(V: Floats, F: Integers) -> Integers:
     """For each vertex the lowest-numbered one that it is a copy of: both at borders, in exactly one place.
 
     Files with one texture coordinate a vertex cut a surface along the seams of its texture, STL cuts out every

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import igl
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from toongeo.arrays import Floats, Integers, Mask
 
 if TYPE_CHECKING:
     import trimesh
@@ -18,12 +20,12 @@ MeshLike: TypeAlias = "ArrayLike | trimesh.Trimesh"  # vertices, or a mesh that 
 
 # Twice the area over the longest edge squared: the sine of the smallest angle, about. Below it, one rounding
 # error decides the normal.
-DEGENERATE = 1e-12
+_DEGENERATE = 1e-12
 
 
 def validate_mesh(
     V: MeshLike, F: ArrayLike | None = None, *, names: tuple[str, str] = ("V", "F"), nondegenerate: bool = False
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+) -> tuple[Floats, Integers]:
     """Check a triangle mesh and give it back as float64 and int64, C-contiguous.
 
     Every function that takes a mesh comes by here, and so takes either form of it.
@@ -78,7 +80,7 @@ def validate_mesh(
     return V, F
 
 
-def validate_like(V: MeshLike, F: NDArray[np.int64], *, name: str = "V", like: str) -> Any:
+def validate_like(V: MeshLike, F: Integers, *, name: str = "V", like: str) -> Any:
     """Vertices of another shape of a checked mesh `like` with triangles F: an array as it came, or those of a Trimesh.
 
     Raises
@@ -100,7 +102,7 @@ def _trimesh(V: object) -> Any:
     return V if trimesh is not None and isinstance(V, trimesh.Trimesh) else None
 
 
-def validate_vertices(V: object, *, name: str = "V") -> NDArray[np.float64]:
+def validate_vertices(V: object, *, name: str = "V") -> Floats:
     """Finite (n, 3) float64 vertices, or a ValueError (see `validate_mesh`)."""
     V = np.asarray(V)
     if V.ndim != 2 or V.shape[1] != 3 or len(V) == 0 or V.dtype.kind not in "fiu":
@@ -115,7 +117,7 @@ def validate_vertices(V: object, *, name: str = "V") -> NDArray[np.float64]:
     return V
 
 
-def validate_faces(F: object, n: int, *, name: str = "F") -> NDArray[np.int64]:
+def validate_faces(F: object, n: int, *, name: str = "F") -> Integers:
     """In-range (m, 3) int64 triangles of `n` vertices, or a ValueError (see `validate_mesh`)."""
     F = np.asarray(F)
     if F.ndim != 2 or F.shape[1] != 3 or len(F) == 0 or F.dtype.kind not in "iu":
@@ -128,6 +130,6 @@ def validate_faces(F: object, n: int, *, name: str = "F") -> NDArray[np.int64]:
     return F
 
 
-def degenerate_triangles(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArray[np.bool_]:
+def degenerate_triangles(V: Floats, F: Integers) -> Mask:
     """Mask (m,) of the triangles whose normal is lost in rounding. Scale-free; expects checked arrays."""
-    return np.asarray(igl.doublearea(V, F) <= DEGENERATE * igl.squared_edge_lengths(V, F).max(axis=1))
+    return np.asarray(igl.doublearea(V, F) <= _DEGENERATE * igl.squared_edge_lengths(V, F).max(axis=1))

@@ -5,12 +5,13 @@ from __future__ import annotations
 import igl
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
+
+from toongeo.arrays import Integers
 
 __all__ = ["adjacency"]
 
 
-def adjacency(F: NDArray[np.int64], n: int) -> sp.csr_matrix:
+def adjacency(F: Integers, n: int) -> sp.csr_matrix:
     """Symmetric 0/1 matrix of the edges of a mesh.
 
     Parameters

@@ -5,8 +5,9 @@ from __future__ import annotations
 import igl
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from toongeo.arrays import Floats, Integers
 from toongeo.geometry.validate_mesh import degenerate_triangles, validate_mesh
 
 __all__ = ["cotangent_laplacian"]
@@ -74,7 +75,7 @@ def _clamped(C: sp.csr_matrix, clamp: float) -> sp.csr_matrix:
     return sp.csr_matrix((np.where(edge, -weight, diagonal[row]), C.indices, C.indptr), shape=C.shape)
 
 
-def _with_flat(C: sp.csr_matrix, V: NDArray[np.float64], F: NDArray[np.int64]) -> sp.csr_matrix:
+def _with_flat(C: sp.csr_matrix, V: Floats, F: Integers) -> sp.csr_matrix:
     """Add the edges of triangles without area; what stands on the diagonal is not looked at."""
     X, corners = np.ascontiguousarray(V.T), np.ascontiguousarray(F.T)
     x = [X[:, corner] for corner in corners]

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import igl
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from toongeo.arrays import Floats
 from toongeo.geometry.validate_mesh import validate_mesh
 
 __all__ = ["vertex_normals"]
 
 
-def vertex_normals(V: ArrayLike, F: ArrayLike) -> NDArray[np.float64]:
+def vertex_normals(V: ArrayLike, F: ArrayLike) -> Floats:
     """Unit vertex normals: the sum of the cross products of the triangles around, normalised.
 
     Parameters

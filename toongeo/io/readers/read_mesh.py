@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Bytes, Floats
 from toongeo.colour.srgb import linear_to_srgb
 from toongeo.io.readers.read_obj import read_obj
 from toongeo.io.scene import Scene, SceneMesh
@@ -99,7 +99,7 @@ def _meshes(content: bytes, kind: str) -> list[SceneMesh]:
     return found
 
 
-def _scene_mesh(mesh: trimesh.Trimesh, place: NDArray[np.float64], name: str, *, keep_normals: bool) -> SceneMesh:
+def _scene_mesh(mesh: trimesh.Trimesh, place: Floats, name: str, *, keep_normals: bool) -> SceneMesh:
     """A mesh where its node puts it; a mirror turns its triangles over."""
     vertices, faces = np.array(mesh.vertices, np.float64), np.array(mesh.faces, np.int64)
     if not np.array_equal(place, np.eye(4)):
@@ -120,14 +120,14 @@ def _scene_mesh(mesh: trimesh.Trimesh, place: NDArray[np.float64], name: str, *,
     )
 
 
-def _normals(mesh: trimesh.Trimesh, place: NDArray[np.float64]) -> NDArray[np.float64] | None:
+def _normals(mesh: trimesh.Trimesh, place: Floats) -> Floats | None:
     """Those of the file, which know nothing of its seams; None if one has no direction."""
     normals = np.asarray(mesh.vertex_normals) @ np.linalg.inv(place[:3, :3])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return normals / length if (length > 0).all() else None
 
 
-def _texture(material: Any) -> NDArray[np.uint8] | None:
+def _texture(material: Any) -> Bytes | None:
     picture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     return None if picture is None else np.array(picture.convert("RGB"))
 

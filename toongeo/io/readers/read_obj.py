@@ -7,11 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats, Integers
 
 __all__ = ["ObjData", "read_obj"]
-
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +33,9 @@ class ObjData:
         (m,) into ``objects``.
     """
 
-    vertices: NDArray[np.float64]
+    vertices: Floats
     faces: Integers
-    uv: NDArray[np.float64]
+    uv: Floats
     uv_faces: Integers
     objects: tuple[str, ...]
     face_object: Integers
@@ -135,7 +134,7 @@ class _LineError(ValueError):
         self.line = int(line)
 
 
-def _numbers(rows: _Rows) -> NDArray[np.float64]:
+def _numbers(rows: _Rows) -> Floats:
     """The numbers (n, most) of all lines."""
     short = np.array(rows.sizes, dtype=np.int64) != rows.most
     if short.any():
