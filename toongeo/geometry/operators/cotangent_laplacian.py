@@ -53,12 +53,14 @@ def cotangent_laplacian(V: ArrayLike, F: ArrayLike, *, clamp: float | None = Non
     if clamp is not None and not 0 < clamp <= 1:
         raise ValueError(f"clamp: expected a number in (0, 1] or None, got {clamp}")
     V, F = validate_mesh(V, F, nondegenerate=clamp is None)
+    C = _rows(igl.cotmatrix(V, F))
     if clamp is None:
-        return _rows(-igl.cotmatrix(V, F))
-    # One triangle without area would turn libigl's matrix into NaN.
-    flat = degenerate_triangles(V, F)
-    C = _rows(-igl.cotmatrix(V, F[~flat]) if not flat.all() else sp.csc_matrix((len(V), len(V))))
-    return _clamped(_with_flat(C, V, F[flat]) if flat.any() else C, clamp)
+        C.data *= -1
+        return C
+    if not np.isfinite(C.data).all():  # one triangle without area is enough
+        flat = degenerate_triangles(V, F)
+        C = _with_flat(_rows(igl.cotmatrix(V, F[~flat])), V, F[flat])
+    return _clamped(C, clamp)
 
 
 def _rows(C: sp.csc_matrix) -> sp.csr_matrix:
@@ -67,12 +69,15 @@ def _rows(C: sp.csc_matrix) -> sp.csr_matrix:
 
 
 def _clamped(C: sp.csr_matrix, clamp: float) -> sp.csr_matrix:
-    """The same edges with weights within bounds, and the diagonal that belongs to them."""
+    """libigl's matrix with weights within bounds, the diagonal that belongs to them, and our sign."""
     row = np.repeat(np.arange(C.shape[0]), np.diff(C.indptr))
-    edge = C.indices != row
-    weight = np.where(edge, np.clip(-C.data, clamp, 1 / clamp), 0.0)
-    diagonal = np.bincount(row, weight, minlength=C.shape[0])
-    return sp.csr_matrix((np.where(edge, -weight, diagonal[row]), C.indices, C.indptr), shape=C.shape)
+    diagonal = C.indices == row
+    weight = np.clip(C.data, clamp, 1 / clamp)
+    weight[diagonal] = 0.0
+    total = np.bincount(row, weight, minlength=C.shape[0])
+    data = np.negative(weight, out=weight)
+    data[diagonal] = total[row[diagonal]]
+    return sp.csr_matrix((data, C.indices, C.indptr), shape=C.shape)
 
 
 def _with_flat(C: sp.csr_matrix, V: Floats, F: Integers) -> sp.csr_matrix:
@@ -89,7 +94,7 @@ def _with_flat(C: sp.csr_matrix, V: Floats, F: Integers) -> sp.csr_matrix:
         edge = corners[i] != corners[j]
         rows += [corners[i][edge], corners[j][edge], corners[i][edge]]
         columns += [corners[j][edge], corners[i][edge], corners[i][edge]]
-        weights += [-half[edge], -half[edge], np.zeros(edge.sum())]
+        weights += [half[edge], half[edge], np.zeros(edge.sum())]
     # Zeros stay, unlike in a sum of matrices: an edge whose weights cancel is one all the same.
     entries = np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))
     return sp.csr_matrix(entries, shape=C.shape)
