@@ -8,12 +8,12 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from toongeo.arrays import Floats, Integers
-from toongeo.geometry.validate_mesh import degenerate_triangles, validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, degenerate_triangles, validate_mesh
 
 __all__ = ["cotangent_laplacian"]
 
 
-def cotangent_laplacian(V: ArrayLike, F: ArrayLike, *, clamp: float | None = None) -> sp.csr_matrix:
+def cotangent_laplacian(V: MeshLike, F: ArrayLike | None, *, clamp: float | None = None) -> sp.csr_matrix:
     """Positive semi-definite cotangent Laplacian: ``x^T C x = integral |grad x|^2``.
 
     Off-diagonal ``C_ij = -w_ij`` with ``w_ij = (cot a_ij + cot b_ij) / 2`` of the angles that face the
@@ -21,9 +21,9 @@ def cotangent_laplacian(V: ArrayLike, F: ArrayLike, *, clamp: float | None = Non
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Vertices. The result does not depend on the unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles.
     clamp : float in (0, 1], optional
         Bring every edge weight into ``[clamp, 1 / clamp]``. Then all off-diagonals are negative (rings

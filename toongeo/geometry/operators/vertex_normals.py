@@ -7,19 +7,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from toongeo.arrays import Floats
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
 
 __all__ = ["vertex_normals"]
 
 
-def vertex_normals(V: ArrayLike, F: ArrayLike) -> Floats:
+def vertex_normals(V: MeshLike, F: ArrayLike | None) -> Floats:
     """Unit vertex normals: the sum of the cross products of the triangles around, normalised.
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Vertices, any unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles, counter-clockwise from outside.
 
     Returns
