@@ -42,9 +42,9 @@ def test_names_and_vectors_say_the_same(avatar):
     np.testing.assert_array_equal(avatar.vertices({"jawOpen": 0.6}), avatar.vertices(weights))
 
 
-def test_the_pose_is_the_face_of_the_picture(cartoon):
+def test_the_pose_is_the_face_of_the_picture(avatars):
     """A smile was taken out of this face, and its eyes look aside: in its pose both are back."""
-    avatar = make_avatar(*cartoon("astronaut"), texture_size=64)
+    avatar = avatars("astronaut")
     assert avatar.pose and all(0 < weight <= 1 for weight in avatar.pose.values())
     expected = np.r_[avatar.rig.pose, avatar.eyes.pose]
     np.testing.assert_array_equal(avatar.rig.weights(avatar.pose), expected)
@@ -116,8 +116,8 @@ def test_the_glb_holds_46_named_targets_and_eyes_that_follow_gaze(glb):
 
 
 @pytest.mark.parametrize("name", CARTOONS)
-def test_every_example_gives_a_valid_glb(name, cartoon, node, tmp_path):
-    result = make_avatar(*cartoon(name))
+def test_every_example_gives_a_valid_glb(name, avatars, node, tmp_path):
+    result = avatars(name)
     assert 100 * result.report.aligned["inner51"] <= 0.1
     result.save(tmp_path / "a.glb")
     (verdict,) = node("validate.mjs", tmp_path / "a.glb")
@@ -171,8 +171,8 @@ def eyeball_pixels(avatar, weights, yaw):
 
 
 @pytest.mark.parametrize("name", CARTOONS)
-def test_closed_eyes_hide_the_eyeballs(name, cartoon):
-    result = make_avatar(*cartoon(name))
+def test_closed_eyes_hide_the_eyeballs(name, avatars):
+    result = avatars(name)
     blink = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
     assert eyeball_pixels(result, {}, 0.0) > 100
     assert eyeball_pixels(result, blink, 0.0) <= 0.002 * eyeball_pixels(result, {}, 0.0)

@@ -481,9 +481,9 @@ def test_twice_the_same_to_the_last_bit(subject, fitted):
 
 
 @pytest.mark.parametrize("picture", ["bad_guy", "blue_girl", "manga_girl"])
-def test_drawings_keep_the_face_of_their_landmarks(cartoon, model, picture):
+def test_drawings_keep_the_face_of_their_landmarks(cartoon, fits, model, picture):
     img, landmarks = cartoon(picture)
-    fit = fit_3dmm(img, landmarks)
+    fit = fits(picture)
     refined = photometric_fit(img, fit, landmarks)
     face = model.region("face")
     assert np.linalg.norm((refined.vertices - fit.vertices)[face], axis=1).mean() < 1.0
