@@ -33,21 +33,22 @@ class Once:
             return made
 
 
+def _template():
+    from toongeo.model import default_model
+
+    return (default_model(), *default_model().eyes)
+
+
 class _Pickler(pickle.Pickler):
-    """Leaves out the template: every process has its own, and much is cached by its identity."""
+    """Leaves out the template: every process has its own, and it is known by its identity."""
 
     def persistent_id(self, obj):
-        from toongeo.model import default_model
-
-        return "default_model" if obj is default_model() else None
+        return next((k for k, part in enumerate(_template()) if obj is part), None)
 
 
 class _Unpickler(pickle.Unpickler):
     def persistent_load(self, pid):
-        from toongeo.model import default_model
-
-        assert pid == "default_model"
-        return default_model()
+        return _template()[pid]
 
 
 def _dump(obj, path):
