@@ -11,6 +11,8 @@ from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, split_seams
 from toongeo.model import MorphableModel, default_model
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 
+__all__ = ["load_avatar"]
+
 
 def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = None) -> Avatar:
     """Read a ``.glb`` that :meth:`toongeo.Avatar.save` wrote.

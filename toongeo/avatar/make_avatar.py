@@ -36,8 +36,10 @@ from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
 
+__all__ = ["STAGES", "make_avatar"]
+
 STAGES = ("fit", "parse", "align", "rig", "eyes", "texture", "report")
-ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
+_ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
     "cartoon": align_face,
     "caricature": align_caricature,
 }
@@ -101,9 +103,9 @@ def make_avatar(
     ValueError
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, or method or rig is unknown.
     """
-    align = ALIGNERS.get(method)
+    align = _ALIGNERS.get(method)
     if align is None:
-        raise ValueError(f"method: expected one of {', '.join(ALIGNERS)}, got {method!r}")
+        raise ValueError(f"method: expected one of {', '.join(_ALIGNERS)}, got {method!r}")
     check_image(img)
     check_size(texture_size)
     if rig not in ("transfer", "caricature"):
