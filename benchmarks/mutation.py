@@ -151,12 +151,14 @@ def verdict(path: str, mutant: Mutant, tree: Tree, known: TestMap, limit: float)
     return {**result, "stage": asked, "seconds": round(seconds, 1)}
 
 
-def sample(paths: list[str], count: int, seed: int) -> list[tuple[str, Mutant]]:
+def sample(root: Path, paths: list[str], count: int, seed: int) -> list[tuple[str, Mutant]]:
     """A seeded sample of all faults in the files under some paths, in random order."""
-    files = sorted({file for path in paths for file in (ROOT / path).rglob("*.py")} | {
-        ROOT / path for path in paths if path.endswith(".py")
-    })  # fmt: skip
-    every = [(str(file.relative_to(ROOT)), mutant) for file in files for mutant in mutants(file.read_bytes())]
+    files = {
+        file for path in paths for file in ([root / path] if path.endswith(".py") else (root / path).rglob("*.py"))
+    }
+    every = [
+        (file.relative_to(root).as_posix(), mutant) for file in sorted(files) for mutant in mutants(file.read_bytes())
+    ]
     return random.Random(seed).sample(every, min(count, len(every)))
 
 
@@ -202,7 +204,7 @@ def main() -> None:
         known.gather(options.map)
         return
     done = {json.loads(line)["id"] for line in options.log.read_text().splitlines()} if options.log.exists() else set()
-    for path, mutant in sample(options.paths, options.sample, options.seed):
+    for path, mutant in sample(tree.root, options.paths, options.sample, options.seed):
         name = f"{path}:{mutant.start}:{mutant.stop}:{mutant.after}"
         if name in done:
             continue
