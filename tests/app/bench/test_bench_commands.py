@@ -8,9 +8,10 @@ import cv2
 import numpy as np
 import pytest
 
+from toongeo.app.bench.blind_sheets import QUESTIONS
 from toongeo.app.bench.eos_rival import EosRival
 from toongeo.app.bench.method_errors import method_errors
-from toongeo.app.bench.pair_sheets import QUESTIONS, pair_sheets
+from toongeo.app.bench.pair_sheets import pair_sheets
 from toongeo.app.bench.score_answers import score_answers
 from toongeo.app.cli import main
 from toongeo.io import read_image
@@ -103,7 +104,7 @@ def test_pairs_are_blind_and_score_goes_the_whole_way(folder, tmp_path, capsys):
     favourite = {name: next(letter for letter in "AB" if pair[letter] == "ours") for name, pair in pairs.items()}
     filled = [f"{row['picture']},{row['question']},{favourite[row['picture']]}" for row in form]
     (tmp_path / "filled.csv").write_text("\n".join(["picture,question,answer", *filled]))
-    assert all((p.ours, p.baseline, p.p_value) == (2, 0, 0.5) for p in score_answers(
+    assert all((p.first, p.second, p.p_value) == (2, 0, 0.5) for p in score_answers(
         tmp_path / "filled.csv", out / ".key.json"
     ))  # fmt: skip
     assert main(["bench", "score", str(tmp_path / "filled.csv"), str(out / ".key.json")]) == 0
