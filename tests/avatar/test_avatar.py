@@ -19,6 +19,7 @@ def test_neutral_vertices_are_the_aligned_face_if_it_shows_no_expression(avatar)
     np.testing.assert_array_equal(avatar.vertices(), avatar.face.vertices)
 
 
+@pytest.mark.slow
 def test_a_caricature_becomes_an_avatar_like_any_other(cartoon, tmp_path):
     img, landmarks = cartoon("bad_guy")
     result = make_avatar(img, landmarks, method="caricature", texture_size=256)
@@ -223,7 +224,7 @@ def test_render_is_a_picture_of_the_size_asked_for(avatar):
 
 def test_stages_are_announced_and_timed(avatar, cartoon):
     heard = []
-    result = make_avatar(*cartoon("blue_girl"), progress=heard.append)
+    result = make_avatar(*cartoon("blue_girl"), texture_size=64, progress=heard.append)
     assert tuple(heard) == STAGES == tuple(result.report.seconds)
 
 
