@@ -1,8 +1,8 @@
 """Are the tests worth their name? Small faults are put into the library, one at a time, and tests must notice.
 
-usage: python benchmarks/mutation.py --paths toongeo/geometry toongeo/render --sample 400 --seed 0 --log mutation.jsonl
-       python benchmarks/mutation.py --log mutation.jsonl --report
-       python benchmarks/mutation.py --map [TESTS ...]
+usage: python benchmarks/mutation.py --map [TESTS ...]
+       python benchmarks/mutation.py --paths toongeo/geometry toongeo/render --sample 400 --seed 0
+       python benchmarks/mutation.py --report
 
 Faults are those of `mutants.py`, a seeded sample of all there are. Each runs in a copy of the tree, never in the
 checkout: first the tests that mirror the file and its doctests, then those which the map says reach its line, the
@@ -189,11 +189,12 @@ def main() -> None:
     parser.add_argument("--sample", type=int, default=400, metavar="N")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--limit", type=float, default=300.0, metavar="S", help="CPU seconds of one run of tests")
-    parser.add_argument("--log", type=Path, default=Path("mutation.jsonl"))
+    parser.add_argument("--log", type=Path, help="mutation.jsonl in the work folder, if not given")
     parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "toongeo-mutation")
     parser.add_argument("--map", nargs="*", metavar="TESTS", help="run these tests (all) with coverage, and stop")
     parser.add_argument("--report", action="store_true", help="only print what the log holds")
     options = parser.parse_args()
+    options.log = options.log or options.work / "mutation.jsonl"
     if options.report:
         print(report(options.log))
         return
