@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from toongeo.geometry import nonrigid_register, vertex_normals
+from toongeo.geometry.registration.thin_shell import ThinShell
 
 LANDMARKS = np.array([0, 20, 57, 130, 200, 301, 377])
 
@@ -106,6 +107,23 @@ def test_distances_are_those_to_the_partners_in_the_unit_of_the_target(bumpy, ro
         found.landmark_errors, np.linalg.norm(found.vertices - target, axis=1)[LANDMARKS], atol=1e-9
     )
     assert found.distances.max() > 0.1
+
+
+@pytest.mark.parametrize(("step", "status"), [(0.99e-3, "converged"), (1.01e-3, "iteration limit")])
+def test_a_last_step_of_a_thousandth_has_converged(bumpy, monkeypatch, step, status):
+    V, F = bumpy
+    monkeypatch.setattr(ThinShell, "laid_on", lambda self, *_: (self.V, step))
+    assert nonrigid_register(V, F, V, F, LANDMARKS, LANDMARKS).status == status
+
+
+@pytest.mark.parametrize(("off", "near"), [(0.099, True), (0.101, False)])
+def test_a_partner_within_a_tenth_of_the_spread_of_the_landmarks_is_one(bumpy, monkeypatch, off, near):
+    V, F = bumpy
+    monkeypatch.setattr(ThinShell, "laid_on", lambda self, *_: (self.V + off * vertex_normals(self.V, F), 0.0))
+    found = nonrigid_register(V, F, V, F, LANDMARKS, LANDMARKS)
+    unit = np.sqrt(((V[LANDMARKS] - V[LANDMARKS].mean(0)) ** 2).sum(1).mean())
+    facing = found.distances > 0.995 * off * unit  # elsewhere the surface bends towards the point
+    assert facing.sum() > 100 and (found.matched[facing] == near).all()
 
 
 def test_landmarks_are_vertices_or_points(bumpy):
