@@ -248,3 +248,14 @@ def test_missing_landmarks_are_worked_around(cartoon, avatar):
     jaw, rest = away[:8], np.delete(away, [*range(8), 40])
     assert np.isfinite(result.vertices()).all() and rest.max() < 5 and away[40] < 5 and jaw.max() < 25  # mm
     assert 100 * result.report.aligned["inner51"] <= 0.1
+
+
+def test_points_of_a_detector_without_a_jaw_or_on_a_table_make_an_avatar(cartoon, model):
+    img, landmarks = cartoon("moustache_man")
+    outer_eyes = np.linalg.norm(landmarks[45] - landmarks[36])
+    at = np.r_[17:68]
+    for points, scheme in ((landmarks[at], "ibug51"), (landmarks[at], model.landmarks[at])):
+        made = make_avatar(img, points, scheme=scheme, texture_size=64)
+        found = made.face.project(made.vertices(made.pose)[made.face.landmark_vertices])
+        error = np.linalg.norm(found - landmarks, axis=1)[17:48]  # a table's points are fitted, not met
+        assert error.mean() < (0.01 if isinstance(scheme, str) else 0.08) * outer_eyes

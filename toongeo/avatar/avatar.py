@@ -10,6 +10,7 @@ import numpy as np
 
 from toongeo.avatar.save_avatar import save_avatar
 from toongeo.avatar.stages import AvatarStages
+from toongeo.model import atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.protocols import Camera
 from toongeo.render import (
@@ -74,13 +75,17 @@ class Avatar(AvatarStages):
         """Vertices (k, 3), mm, of the left (0) or right (1) eyeball; weights and errors as for :meth:`vertices`."""
         if side not in (0, 1):
             raise ValueError(f"side: expected 0 (left) or 1 (right), got {side!r}")
+        count = len(self.eyes.templates)
+        if side >= count:
+            raise ValueError(f"side: expected an eyeball of the model, which has {count}, got {side}")
         gaze = self.rig.weights(weights)[len(self.names) :]
         return self.eyes.looking(side, dict(zip(GAZE_NAMES, gaze.tolist(), strict=True)))
 
     def surfaces(self, weights: Weights = None) -> list[Surface]:
         """Head, left and right eyeball, textured, for :func:`toongeo.render_mesh`."""
         model = self.face.model
-        head = Surface(self.vertices(weights), model.faces, uv=model.uv, uv_faces=model.uv_faces, texture=self.texture)
+        atlas = atlas_coordinates(model)
+        head = Surface(self.vertices(weights), model.faces, uv=atlas.uv, uv_faces=atlas.uv_faces, texture=self.texture)
         eyes = [
             Surface(
                 self.eye_vertices(side, weights),

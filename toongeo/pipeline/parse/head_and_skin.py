@@ -1,4 +1,7 @@
-"""A head cut out of its picture, and the skin cut out of the head."""
+"""A head cut out of its picture, and the skin cut out of the head.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 

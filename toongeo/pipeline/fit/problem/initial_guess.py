@@ -16,7 +16,7 @@ from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["held_bounds", "likeliest", "posing_trust", "principal_point_of", "start_vector"]
 
-_POSING_PASSES = 4
+_POSING_PASSES = 4  # of pose and robust weights in turn
 
 
 def likeliest(model: MorphableModel, unknowns: Unknowns) -> Floats:

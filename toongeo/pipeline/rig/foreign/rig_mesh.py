@@ -1,4 +1,7 @@
-"""A rig for a head that was modelled elsewhere."""
+"""A rig for a head that was modelled elsewhere.
+
+Constants were judged on ICT-FaceKit's head and the template (``benchmarks/register.py``), on no picture.
+"""
 
 import time
 
@@ -9,15 +12,16 @@ from toongeo.geometry import DeformationTransfer, validate_mesh
 from toongeo.geometry.landmark_matrix import landmark_matrix
 from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model import MorphableModel, default_model
-from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.ibug68 import INNER
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.straighten_teeth import PARTS
 from toongeo.pipeline.rig.foreign.carry_shapes import carry_shapes
+from toongeo.pipeline.rig.foreign.check_winding import check_winding
 from toongeo.pipeline.rig.foreign.close_gaps import close_gaps
 from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
 from toongeo.pipeline.rig.foreign.register_face import hidden, register_face
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.split_gaze import split_gaze
 
 __all__ = ["rig_mesh"]
 
@@ -51,15 +55,16 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     Returns
     -------
     Rig
-        ``names``, ``neutral`` (`V`) and ``deltas`` (k, n, 3) in the frame and unit of `V`; nothing follows the gaze.
+        ``names``, ``neutral`` (`V`) and ``deltas`` (k, n, 3) in the frame and unit of `V`; nothing follows the gaze
+        unless the model has shapes of its names.
         ``report`` holds ``seconds``, ``matched`` (share of the model's face that found a partner), ``distance`` (its
         mean distance, in units of `V`) and ``partnered`` (share of the head's vertices).
 
     Raises
     ------
     ValueError
-        On a malformed mesh, landmarks of another shape, out of range or too few, or a mesh that is no face where the
-        landmarks are.
+        On a malformed mesh, landmarks of another shape, out of range or too few, triangles that face into the head, or
+        a mesh that is no face where the landmarks are; if the model has no expressions.
 
     See Also
     --------
@@ -79,14 +84,17 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     """
     started = time.perf_counter()
     model = model or default_model()
+    if not model.has("expression"):
+        raise ValueError("model: expected one with named expressions, got one without")
     vertices, faces = validate_mesh(V, F)
     used = np.unique(faces)
     points = _checked_points(vertices, faces, landmarks, model)
+    check_winding(vertices, faces, points, model)
     # Vertices in no triangle have no surface around them, and stay.
     local = np.searchsorted(used, faces)
     head = register_face(vertices[used], local, points, model)
     skin = ~hidden(model)
-    face = model.regions.get("face", skin) & skin
+    face = model.region("face") & skin
     matched = float(head.registration.matched[face].mean())
     if matched < _LEAST_MATCHED:
         raise ValueError(
@@ -101,12 +109,13 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     deltas[:, used] = settle_loose_parts(
         vertices[used], local, points, carried, partnered, _mouth_parts(model, carrier, shapes)
     )
+    names, deltas, gaze = split_gaze(model.expression_names[: model.n_named], deltas)
     return Rig(
-        names=model.expression_names[: model.n_named],
+        names=names,
         neutral=vertices.copy(),
         deltas=deltas,
-        gaze=np.zeros((len(GAZE_NAMES), *vertices.shape), np.float32),
-        pose=np.zeros(model.n_named),
+        gaze=gaze,
+        pose=np.zeros(len(names)),
         report={
             "seconds": time.perf_counter() - started,
             "matched": matched,
