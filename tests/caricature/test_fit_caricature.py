@@ -171,7 +171,7 @@ def test_an_aligned_caricature_is_the_caricature(fit, girl):
     np.testing.assert_array_equal(face.vertices, fit.vertices)
     assert face.fit is fit.fit
     assert face.camera.scale == fit.camera.scale
-    assert face.report["rms_px"] == fit.report.rms_px
+    assert face.report.rms_px == fit.report.rms_px
 
 
 def test_a_warp_reproduces_affine_maps_of_the_skin(face_space, rng):

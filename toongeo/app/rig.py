@@ -59,7 +59,7 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     size = float(np.linalg.norm(np.ptp(head.vertices, axis=0)))
     write_glb(output, Scene((head,)), tolerance_mm=_TOLERANCE * size)
     report = found.report
-    print(f"{len(found.names)} expressions on {len(read.vertices)} vertices in {report['seconds']:.1f} s")
-    print(f"{report['matched']:.1%} of the template's face found a partner, mean distance {report['distance']:.3g}")
+    print(f"{len(found.names)} expressions on {len(read.vertices)} vertices in {report.seconds:.1f} s")
+    print(f"{report.matched:.1%} of the template's face found a partner, mean distance {report.distance:.3g}")
     print(f"wrote {output}")
     return found

@@ -261,7 +261,7 @@ def test_the_slope_of_the_picture_is_that_of_its_interpolant(rng):
     beyond, flat = plane.sample(np.array([[-9.0, 9.0]]))
     np.testing.assert_allclose(beyond[0], plane.light[0, 0])
     assert not flat.any()
-    assert plane.trust(np.array([[-9.0, 9.0], [0.0, 0.0]])).tolist() == [0.0, 1.0]
+    assert plane.confidence_at(np.array([[-9.0, 9.0], [0.0, 0.0]])).tolist() == [0.0, 1.0]
 
 
 # --- light in closed form ---
@@ -341,7 +341,7 @@ def test_the_plane_shows_the_picture_upright_and_in_millimetres():
         points = np.array([[0.0, 0.0], [10.0, 5.0], [-15.0, 20.0]])
         expected = (frame.origin[0] + scale * points[:, 0]) / (side - 1)
         np.testing.assert_allclose(plane.sample(points)[0][:, 0], expected, atol=0.01)
-        np.testing.assert_allclose(plane.trust(points), 1, atol=1e-6)
+        np.testing.assert_allclose(plane.confidence_at(points), 1, atol=1e-6)
 
 
 def test_skin_is_the_commonest_colour():

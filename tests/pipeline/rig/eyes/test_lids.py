@@ -145,14 +145,14 @@ def test_ways_that_cross_are_made_alike(model):
 
 def test_both_eyes_are_reported_closed(stages):
     _, _, rig, _ = stages
-    assert min(rig.report["closure_left"], rig.report["closure_right"]) > 94
+    assert min(rig.report.closure_left, rig.report.closure_right) > 94
 
 
 def test_without_closing_a_tall_eye_stays_open(aligned, transferred):
     face = aligned("manga_girl")
     rig, eyes = fit_lids(face, transferred("manga_girl"), close=False)
     assert visible_eyeballs(face, rig, eyes, BLINK).min() > 0.1
-    assert max(rig.report["closure_left"], rig.report["closure_right"]) < 80
+    assert max(rig.report.closure_left, rig.report.closure_right) < 80
 
 
 def test_closure_is_the_share_of_the_opening_that_is_gone(model):
@@ -165,7 +165,7 @@ def test_closure_is_the_share_of_the_opening_that_is_gone(model):
 
 def test_an_eye_that_is_drawn_shut_stays_shut(drawn_shut):
     face, rig, eyes = drawn_shut
-    assert rig.report["closure_right"] > 90
+    assert rig.report.closure_right > 90
     assert gaps(face, rig, eyes, 1).max() <= 0.08
     assert visible_eyeballs(face, rig, eyes, BLINK)[1] <= 0.005
     blink = rig.deltas[rig.names.index("eyeBlinkRight")]

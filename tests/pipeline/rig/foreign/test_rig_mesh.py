@@ -196,4 +196,4 @@ def test_a_model_without_eyes_will_do(model):
     front = model.faces[model.region("face")[model.faces].all(1)]
     rig = rig_mesh(model.mean, front, model.landmarks, model=small)
     unused = np.setdiff1d(np.arange(len(model.mean)), front)
-    assert not rig.deltas[:, unused].any() and rig.report["partnered"] > 0.9
+    assert not rig.deltas[:, unused].any() and rig.report.partnered > 0.9

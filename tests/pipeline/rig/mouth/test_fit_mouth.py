@@ -60,7 +60,7 @@ def test_mouth_close_seals_the_lips_of_an_open_jaw(stages):
     upper, lower = dense(V[line.upper]), dense(V[line.lower])
     gap = max(cKDTree(upper).query(lower)[0].max(), cKDTree(lower).query(upper)[0].max())
     assert gap < 0.01 * width(face.model, V)
-    assert rig.report["lips_closure"] > 99
+    assert rig.report.lips_closure > 99
 
 
 @pytest.mark.parametrize("weights", [{"mouthPucker": 1.0}, preset("kiss")])

@@ -20,7 +20,7 @@ from toongeo.pipeline.rig.foreign.check_winding import check_winding
 from toongeo.pipeline.rig.foreign.close_gaps import close_gaps
 from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
 from toongeo.pipeline.rig.foreign.register_face import hidden, register_face
-from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.rig import Rig, RigReport
 from toongeo.pipeline.rig.split_gaze import split_gaze
 
 __all__ = ["rig_mesh"]
@@ -116,12 +116,12 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
         deltas=deltas,
         gaze=gaze,
         pose=np.zeros(len(names)),
-        report={
-            "seconds": time.perf_counter() - started,
-            "matched": matched,
-            "distance": float(head.registration.distances[face & head.registration.matched].mean()),
-            "partnered": float(partnered.mean()),
-        },
+        report=RigReport(
+            seconds=time.perf_counter() - started,
+            matched=matched,
+            distance=float(head.registration.distances[face & head.registration.matched].mean()),
+            partnered=float(partnered.mean()),
+        ),
     )
 
 
