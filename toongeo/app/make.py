@@ -11,7 +11,7 @@ from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.avatar.save_avatar import writer_for
-from toongeo.io import read_image, read_landmarks
+from toongeo.io import read_image, read_landmark_file
 
 __all__ = ["make"]
 
@@ -25,14 +25,14 @@ def make(
     crop: Crop = "head",
     snap: bool = False,
     photometric: bool = False,
-    scheme: str = "ibug68",
+    scheme: str = "auto",
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> Avatar:
     """Read, build, save and report, with a progress line a stage.
 
-    The parameters are those of :func:`toongeo.make_avatar` and of :meth:`toongeo.Avatar.save`, whose other options are
-    in ``options``.
+    What the landmark file was taken for is printed. Other parameters are those of :func:`toongeo.make_avatar` and of
+    :meth:`toongeo.Avatar.save`, whose further options are in ``options``.
 
     Raises
     ------
@@ -43,7 +43,8 @@ def make(
     saving = {"crop": crop, **(options or {})}
     writer_for(output, format, saving)
     check_output(output, {"image": image, "landmarks": landmarks}, format)
-    img, points = read_image(image), read_landmarks(landmarks, scheme=scheme)
+    img = read_image(image)
+    found = read_landmark_file(landmarks, scheme=scheme, size=img)
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
         def announce(stage: str) -> None:
@@ -51,11 +52,12 @@ def make(
             bar.set_description(stage)
 
         avatar = make_avatar(
-            img, points, snap=snap, photometric=photometric, texture_size=texture_size, scheme=scheme, progress=announce
+            img, found.points, snap=snap, photometric=photometric, texture_size=texture_size, progress=announce
         )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")
     avatar.save(output, format=format, **saving)
+    print(found.message)
     print("\n".join(avatar.report.lines()))
     print(f"wrote {output}")
     return avatar

@@ -15,6 +15,7 @@ from toongeo.io.readers.read_glb import read_glb as read_glb
 from toongeo.io.readers.read_image import read_image as read_image
 from toongeo.io.readers.read_landmark_file import LandmarkFile as LandmarkFile
 from toongeo.io.readers.read_landmark_file import read_landmark_file as read_landmark_file
+from toongeo.io.readers.read_landmark_frames import read_landmark_frames as read_landmark_frames
 from toongeo.io.readers.read_landmarks import read_landmarks as read_landmarks
 from toongeo.io.readers.read_mesh import MESH_SUFFIXES as MESH_SUFFIXES
 from toongeo.io.readers.read_mesh import read_mesh as read_mesh

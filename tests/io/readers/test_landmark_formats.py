@@ -5,7 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from toongeo.io import SCHEMES, ibug_points, read_landmark_file, read_landmarks, write_landmarks
+from toongeo.io import (
+    SCHEMES,
+    ibug_points,
+    read_landmark_file,
+    read_landmark_frames,
+    read_landmarks,
+    write_landmarks,
+)
 from toongeo.io.landmarks.frontal_layout import frontal_layout
 from toongeo.io.landmarks.landmark_schemes import _table, scheme_of
 
@@ -358,6 +365,31 @@ def test_faces_and_frames_are_chosen(written):
             read_landmarks(path, frame=0)
         with pytest.raises(ValueError, match=r"frame: expected 0\.\.2 for .*, got -1"):
             read_landmarks(path, frame=-1)
+
+
+def test_a_face_through_all_frames(written):
+    faces = [FACE, FACE + 7, FACE + 11]
+    nobody = np.full((68, 2), np.nan)
+    takes = {
+        "a.csv": (openface_video([(2, 0, 1, FACE), (3, 0, 0, FACE), (4, 0, 1, FACE + 7), (4, 1, 1, FACE + 11)]), 3),
+        "a.xml": (imglab([[FACE], [], faces[1:]]), 3),
+        "a.json": (json.dumps([[FACE.tolist()], [], [face.tolist() for face in faces[1:]]]), 3),
+    }
+    for name, (content, count) in takes.items():
+        path = written(name, content)
+        found = read_landmark_frames(path)
+        np.testing.assert_allclose(found, [FACE, nobody, FACE + 7], atol=1e-3, err_msg=name)
+        assert len(found) == count
+        np.testing.assert_allclose(read_landmark_frames(path, face=1)[2], FACE + 11, atol=1e-3)
+        with pytest.raises(
+            ValueError, match=rf"face: expected one that is in .*{name}, but 2 is in none of its 3 frames"
+        ):
+            read_landmark_frames(path, face=2)
+    meshes = np.stack([shares(MESH), shares(MESH + 3)])
+    found = read_landmark_frames(written("a.npy", meshes), size=SIZE)
+    np.testing.assert_allclose(found, [FACE, FACE + 3], atol=1e-9)
+    with pytest.raises(ValueError, match="face: expected an integer >= 0, got -1"):
+        read_landmark_frames(written("a.npy", meshes), size=SIZE, face=-1)
 
 
 def test_shares_of_the_picture_need_its_size(written):

@@ -8,19 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo._read_only import read_only
-from toongeo.io.landmarks.frontal_layout import frontal_layout, frontal_pose
-from toongeo.io.landmarks.landmark_schemes import SCHEMES, ibug_points, scheme_of
-from toongeo.io.readers.landmarks.landmark_readers import LANDMARK_READERS
+from toongeo.io.landmarks.landmark_schemes import SCHEMES
+from toongeo.io.readers.landmarks.landmark_readers import raw_landmarks
+from toongeo.io.readers.landmarks.placed_landmarks import PictureSize, placed_landmarks
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks
 
-__all__ = ["LandmarkFile", "PictureSize", "read_landmark_file"]
-
-PictureSize = tuple[int, int] | NDArray[np.uint8]
-
-# Shares of a picture lie in 0..1, and a little beyond for faces at its edge; a face in pixels is larger.
-_LARGEST_SHARE = 2.0
-# How much better a face with x and y exchanged must be, as in check_landmarks.
-_HANDEDNESS_MARGIN = 0.1
+__all__ = ["LandmarkFile", "read_landmark_file"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,28 +91,15 @@ def read_landmark_file(
     (array([ 99.5, 149.5]), 'mediapipe478', 2)
     """
     path = Path(path)
-    reader = LANDMARK_READERS.get(path.suffix.lower())
-    if reader is None:
-        raise ValueError(f"path: expected {_listed(LANDMARK_READERS)}, got {path}")
-    if scheme != "auto" and scheme not in SCHEMES:
-        raise ValueError(f"scheme: expected 'auto' or one of {', '.join(map(repr, SCHEMES))}, got {scheme!r}")
-    raw = reader.read(path, int(reader.one_based if one_based is None else one_based))
+    raw = raw_landmarks(path, scheme, one_based)
     frame = _frame(raw, frame, path)
     faces = raw.frames[frame]
-    points, notes = _pixels(faces[_index(face, len(faces), "face", path)], size, path)
-    name = f"landmarks in {path}"
-    used = scheme_of(points, name) if scheme == "auto" else scheme
-    landmarks = ibug_points(points, used, name)
-    if raw.axes_doubtful and _columns_exchanged(landmarks):
-        landmarks = landmarks[:, ::-1].copy()
-        notes += "; as (x, y), in which they form a face, and not as (y, x)"
-    found = LandmarkFile(landmarks, used, raw.format, frame, face, len(raw.frames), len(faces), "")
-    return replace(found, message=_message(found, path, scheme, len(points)) + notes)
-
-
-def _listed(names: object) -> str:
-    *most, last = list(names)  # type: ignore[call-overload]
-    return f"{', '.join(most)} or {last}"
+    points = faces[_index(face, len(faces), "face", path)]
+    placed = placed_landmarks(points, path, scheme=scheme, size=size, axes_doubtful=raw.axes_doubtful)
+    found = LandmarkFile(
+        placed.points, placed.scheme, raw.format, frame, int(face), len(raw.frames), len(faces), placed.notes
+    )
+    return replace(found, message=_message(found, path, scheme, len(points)) + placed.notes)
 
 
 def _frame(raw: RawLandmarks, frame: int | None, path: Path) -> int:
@@ -138,39 +118,6 @@ def _index(wanted: int, count: int, name: str, path: Path) -> int:
     if isinstance(wanted, bool) or not isinstance(wanted, int | np.integer) or not 0 <= wanted < count:
         raise ValueError(f"{name}: expected 0..{count - 1} for {path}, got {wanted!r}")
     return int(wanted)
-
-
-def _pixels(points: NDArray[np.float64], size: PictureSize | None, path: Path) -> tuple[NDArray[np.float64], str]:
-    """Points in pixels, and a note if they were shares of the picture."""
-    finite = points[np.isfinite(points).all(axis=1)]
-    if not len(finite) or np.abs(finite).max() > _LARGEST_SHARE:
-        return points, ""
-    if size is None:
-        if len(points) in SCHEMES["mediapipe478"]:
-            raise ValueError(f"size: landmarks in {path} are shares of the picture; expected its (width, height)")
-        return points, ""
-    width, height = _width_and_height(size)
-    return points * [width, height] - 0.5, f"; shares of a picture of {width} x {height} px"
-
-
-def _width_and_height(size: PictureSize) -> tuple[int, int]:
-    if isinstance(size, np.ndarray) and size.ndim in (2, 3):
-        size = (size.shape[1], size.shape[0])
-    try:
-        width, height = (int(n) for n in size)
-    except (TypeError, ValueError, OverflowError):
-        raise ValueError(f"size: expected (width, height) px or a picture, got {size!r}") from None
-    if min(width, height) < 1:
-        raise ValueError(f"size: expected (width, height) > 0 px, got {size!r}")
-    return width, height
-
-
-def _columns_exchanged(points: NDArray[np.float64]) -> bool:
-    usable = np.isfinite(points[:, 0])
-    if not np.ptp(points[usable], axis=0).any():
-        return False
-    _, misfit, mirrored = frontal_pose(points[usable], frontal_layout().points[usable])
-    return mirrored < misfit - _HANDEDNESS_MARGIN
 
 
 def _message(found: LandmarkFile, path: Path, asked: str, count: int) -> str:

@@ -5,7 +5,8 @@ import os
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.io.readers.read_landmark_file import PictureSize, read_landmark_file
+from toongeo.io.readers.landmarks.placed_landmarks import PictureSize
+from toongeo.io.readers.read_landmark_file import read_landmark_file
 
 __all__ = ["read_landmarks"]
 

@@ -1,6 +1,7 @@
 """Landmarks on a mesh, from a file."""
 
 import os
+import reprlib
 from pathlib import Path
 from typing import Any
 
@@ -101,7 +102,7 @@ def _point(entry: Any, k: int, vertices: NDArray[np.floating], path: Path) -> li
     index = json_number(entry)
     if index is not None and index.is_integer():  # NumPy, pandas and JavaScript write 1985.0
         if not 0 <= index < len(vertices):
-            shown = str(entry)[:40]
+            shown = reprlib.repr(entry)
             raise ValueError(f"path: landmark {k} in {path}: expected a vertex in 0..{len(vertices) - 1}, got {shown}")
         return [float(x) for x in vertices[int(index)]]
     if isinstance(entry, dict):
@@ -110,11 +111,4 @@ def _point(entry: Any, k: int, vertices: NDArray[np.floating], path: Path) -> li
     point = [x for x in numbers if x is not None and np.isfinite(x)]
     if len(point) == len(numbers) == 3:
         return point
-    raise ValueError(f"path: landmark {k} in {path}: expected a vertex, [x, y, z] or null, got {_shown(entry)}")
-
-
-def _shown(entry: Any) -> str:
-    try:
-        return str(entry)[:40]
-    except (ValueError, RecursionError):  # an integer of more digits than Python writes
-        return type(entry).__name__
+    raise ValueError(f"path: landmark {k} in {path}: expected a vertex, [x, y, z] or null, got {reprlib.repr(entry)}")

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
+from toongeo.io.landmarks.landmark_schemes import SCHEMES
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks
 from toongeo.io.readers.landmarks.read_dlib_xml import read_dlib_xml
 from toongeo.io.readers.landmarks.read_json import read_json
@@ -14,7 +15,7 @@ from toongeo.io.readers.landmarks.read_pts import read_pts
 from toongeo.io.readers.landmarks.read_rows import read_rows
 from toongeo.io.readers.landmarks.read_table import read_table
 
-__all__ = ["LANDMARK_READERS", "LandmarkReader"]
+__all__ = ["LANDMARK_READERS", "LandmarkReader", "raw_landmarks"]
 
 
 @dataclass(frozen=True)
@@ -36,3 +37,20 @@ LANDMARK_READERS: Mapping[str, LandmarkReader] = MappingProxyType(
         ".xml": LandmarkReader(read_dlib_xml),
     }
 )
+
+
+def raw_landmarks(path: Path, scheme: str, one_based: bool | None) -> RawLandmarks:
+    """All faces of a file of any known format.
+
+    Raises
+    ------
+    ValueError, OSError
+        If the format or the scheme is not known, or as the reader of the format says.
+    """
+    reader = LANDMARK_READERS.get(path.suffix.lower())
+    if reader is None:
+        *most, last = LANDMARK_READERS
+        raise ValueError(f"path: expected {', '.join(most)} or {last}, got {path}")
+    if scheme != "auto" and scheme not in SCHEMES:
+        raise ValueError(f"scheme: expected 'auto' or one of {', '.join(map(repr, SCHEMES))}, got {scheme!r}")
+    return reader.read(path, int(reader.one_based if one_based is None else one_based))

@@ -1,5 +1,6 @@
 """Landmarks as JSON: lists and objects, MediaPipe's results, COCO, OpenPose, MMPose, landmarker.io."""
 
+import reprlib
 from pathlib import Path
 from typing import Any
 
@@ -107,4 +108,8 @@ def _flat(node: list[Any]) -> np.ndarray | None:
 def _shown(document: Any) -> str:
     if isinstance(document, dict):
         return "an object with " + ", ".join(repr(key)[:30] for key in list(document)[:8])
-    return f"a list of {len(document)}" if isinstance(document, list) else type(document).__name__
+    if not isinstance(document, list):
+        return type(document).__name__
+    bad = next((k for k, point in enumerate(document) if json_points([point]) is None), None)
+    why = "rows of different lengths" if bad is None else f"{reprlib.repr(document[bad])} at {bad}"
+    return f"a list of {len(document)} with {why}"
