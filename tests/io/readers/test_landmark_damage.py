@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from toongeo.io import read_landmark_file, read_landmarks, read_mesh_landmarks
-from toongeo.io.readers.landmarks import file_text
+from toongeo.io.readers.landmarks import file_contents
 
 ROWS = [[float(k), float(k * k % 97)] for k in range(68)]
 LJSON = {"version": 2, "labels": [], "landmarks": {"points": ROWS}}
@@ -57,6 +57,7 @@ WRONG = [
     ("a.npy", npy(np.zeros((68, 2)))[:-9], "expected an .npy array of numbers"),
     ("a.npy", npy(np.zeros((68, 2))).replace(b"NUMPY\x01", b"NUMPY\x03"), "version .3, 0. of the format is not known"),
     ("a.npy", npy(np.zeros((68, 2), [("x", float)])), "expected an .npy array of numbers, but in .*: got "),
+    ("a.npy", npy(np.empty((10_000_000, 0, 2))), r"expected shape \(68, 2\), .* got \(10000000, 0, 2\)"),
     ("a.npy", npy(np.zeros((68, 5))), r"expected shape \(68, 2\), .* got \(68, 5\)"),
     ("a.json", "[[1" + 400 * "0" + ", 2]" + 67 * ", [1, 2]" + "]", r"a list of 68 with \[10000.*\] at 0"),
     ("a.json", "[[1" + 5000 * "0" + ", 2]" + 67 * ", [1, 2]" + "]", "expected JSON"),
@@ -108,16 +109,21 @@ def test_wrong_files_are_refused_by_name(tmp_path, name, content, message):
 
 
 def test_devices_pipes_folders_and_large_files(tmp_path, monkeypatch):
-    os.mkfifo(tmp_path / "a.pts")
-    with pytest.raises(ValueError, match="path: expected a file, but .*a.pts is a device or a pipe"):
-        read_landmarks(tmp_path / "a.pts")
+    for name in ("a.pts", "a.npy"):
+        os.mkfifo(tmp_path / name)
+        with pytest.raises(ValueError, match=f"path: expected a file, but .*{name} is a device or a pipe"):
+            read_landmarks(tmp_path / name)
     for suffix in ("json", "npy", "csv", "xml"):
         (tmp_path / f"folder.{suffix}").mkdir()
         with pytest.raises(OSError, match=f"folder.{suffix}"):
             read_landmarks(tmp_path / f"folder.{suffix}")
         with pytest.raises(FileNotFoundError, match="nothing"):
             read_landmarks(tmp_path / f"nothing.{suffix}")
-    monkeypatch.setattr(file_text, "_MOST_JSON_MB", 0)
+    (tmp_path / "a.txt").write_text("1 2\n" * 68)
+    monkeypatch.setattr(file_contents, "_MOST_LINES", 60)
+    with pytest.raises(ValueError, match="path: expected at most 60 lines, but .*a.txt has more"):
+        read_landmarks(tmp_path / "a.txt")
+    monkeypatch.setattr(file_contents, "_MOST_JSON_MB", 0)
     (tmp_path / "a.json").write_text("[]")
     with pytest.raises(ValueError, match="path: expected a file of at most 0 MB, but .*a.json is larger"):
         read_landmarks(tmp_path / "a.json")

@@ -153,6 +153,10 @@ def test_faces_and_frames_are_chosen(written):
             assert (found.face, found.faces, found.frames) == (k, 3, 1) and f"face {k} of 3" in found.message
         with pytest.raises(ValueError, match=rf"face: expected 0\.\.2 for .*{name}, got 3"):
             read_landmarks(path, face=3)
+    annotations = [{"image_id": 1 + (k > 0), "face_kpts": triples(face)} for k, face in enumerate(faces)]
+    coco = written("coco.json", json.dumps({"images": [{"id": 1}], "annotations": [{"image_id": 1}, *annotations]}))
+    np.testing.assert_array_equal(read_landmarks(coco), FACE)
+    np.testing.assert_array_equal(read_landmarks(coco, frame=1, face=1), FACE + 11)
     # The first frame has no face.
     video = {
         "a.xml": imglab([[], [FACE], [FACE + 7, FACE + 11]]),

@@ -96,9 +96,7 @@ def read_landmark_file(
     faces = raw.frames[frame]
     points = faces[_index(face, len(faces), "face", path)]
     placed = placed_landmarks(points, path, scheme=scheme, size=size, axes_doubtful=raw.axes_doubtful)
-    found = LandmarkFile(
-        placed.points, placed.scheme, raw.format, frame, int(face), len(raw.frames), len(faces), placed.notes
-    )
+    found = LandmarkFile(placed.points, placed.scheme, raw.format, frame, int(face), len(raw.frames), len(faces), "")
     return replace(found, message=_message(found, path, scheme, len(points)) + placed.notes)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.io.readers.landmarks.file_text import file_json, file_text
+from toongeo.io.readers.landmarks.file_contents import file_json, file_lines
 from toongeo.io.readers.landmarks.json_points import json_number
 from toongeo.io.readers.landmarks.number_words import number, words
 from toongeo.io.readers.landmarks.read_ljson import is_ljson, ljson_groups
@@ -85,8 +85,7 @@ def _rows(points: NDArray[np.float64]) -> list[Any]:
 
 def _lines(path: Path) -> list[Any]:
     """Entries out of lines; a heading and lines that start with ``#`` are skipped."""
-    lines = [line for line in file_text(path).splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    rows = [[number(word) for word in words(line)] for line in lines]
+    rows = [[number(word) for word in words(line)] for _, line in file_lines(path)]
     if rows and all(value is None for value in rows[0]):
         rows = rows[1:]
     entries: list[Any] = []

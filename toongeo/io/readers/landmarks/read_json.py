@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from toongeo.io.landmarks.landmark_schemes import SCHEMES
-from toongeo.io.readers.landmarks.file_text import file_json
+from toongeo.io.readers.landmarks.file_contents import file_json
 from toongeo.io.readers.landmarks.json_points import json_number, json_points
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks, face_points
 from toongeo.io.readers.landmarks.read_ljson import is_ljson, ljson_landmarks
@@ -37,7 +37,7 @@ _KEYS = (
     "points",
     "face",
 )
-_KEYS_OF_FRAMES = ("frames", "images", "instance_info", "annotations")
+_KEYS_OF_FRAMES = ("frames", "images", "instance_info")
 # Numbers a point in a flat list: two, or three with a score; the first that makes a scheme.
 _FLAT = {count * width: width for width in (2, 3) for counts in SCHEMES.values() for count in counts}
 
@@ -88,10 +88,22 @@ def _found(node: Any) -> Any:
         return None
     for key in _KEYS:
         part = _found(node[key]) if key in node else None
+        if part is not None and key == "annotations" and isinstance(node[key], list):
+            return _by_picture(node[key])
         if part is not None:
             faces = isinstance(part, list) and all(isinstance(face, np.ndarray) for face in part)
             return [[face] for face in part] if faces and key in _KEYS_OF_FRAMES else part
     return None
+
+
+def _by_picture(annotations: list[Any]) -> list[_Frame]:
+    """COCO has one list of all faces of all pictures."""
+    frames: dict[str, _Frame] = {}
+    for annotation in annotations:
+        face = _found(annotation)
+        if isinstance(face, np.ndarray):
+            frames.setdefault(str(annotation.get("image_id")), []).append(face)
+    return list(frames.values())
 
 
 def _as_frames(found: list[Any]) -> list[_Frame]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.io.readers.landmarks.file_text import file_json
+from toongeo.io.readers.landmarks.file_contents import file_json
 from toongeo.io.readers.landmarks.json_points import json_points
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks, face_points
 

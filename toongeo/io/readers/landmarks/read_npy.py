@@ -8,12 +8,14 @@ from typing import BinaryIO
 
 import numpy as np
 
+from toongeo.io.readers.landmarks.file_contents import check_file
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks, face_points
 
 __all__ = ["read_npy"]
 
 _HEADERS = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
 _MOST_NUMBERS = 50_000_000  # 400 MB: three hours of 68 points at 30 frames a second
+_MOST_FACES = 1_000_000
 # What NumPy's parser of headers is known to raise on damaged ones.
 _DAMAGED = (
     *(ValueError, TypeError, KeyError, OverflowError, EOFError),
@@ -31,6 +33,7 @@ def read_npy(path: Path, shift: int = 0) -> RawLandmarks:
     ValueError, OSError
         If the file holds something else than such numbers.
     """
+    check_file(path)
     with path.open("rb") as stream, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of headers written by Python 2
         try:
@@ -39,7 +42,7 @@ def read_npy(path: Path, shift: int = 0) -> RawLandmarks:
             array = np.lib.format.read_array(stream, allow_pickle=False)
         except _DAMAGED as error:
             raise ValueError(f"path: expected an .npy array of numbers, but in {path}: {error}") from error
-    if not 2 <= array.ndim <= 4 or array.shape[-1] not in (2, 3):
+    if not 2 <= array.ndim <= 4 or array.shape[-1] not in (2, 3) or math.prod(array.shape[:-2]) > _MOST_FACES:
         raise ValueError(
             f"path: expected shape (68, 2), another number of points, (faces, points, 2 or 3) or (frames, faces, "
             f"points, 2 or 3), got {array.shape} in {path}"

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from toongeo.io.readers.landmarks.file_text import file_text
+from toongeo.io.readers.landmarks.file_contents import file_lines
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks
 from toongeo.io.readers.landmarks.read_rows import points_of_lines
 
@@ -17,11 +17,11 @@ def read_pts(path: Path, shift: int = 1) -> RawLandmarks:
     ValueError, OSError
         If the braces are missing, the number announced is another, or a line is no point.
     """
-    lines = list(enumerate(file_text(path).splitlines(), start=1))
+    lines = file_lines(path)
     marks = [k for k, (_, line) in enumerate(lines) if line.strip() in ("{", "}")]
     if len(marks) != 2 or [lines[k][1].strip() for k in marks] != ["{", "}"]:
         raise ValueError(f"path: expected one '{{' and one '}}' around the points of a .pts file, but not in {path}")
-    body = [(k, line) for k, line in lines[marks[0] + 1 : marks[1]] if line.strip() and not line.startswith("#")]
+    body = lines[marks[0] + 1 : marks[1]]
     for _, line in lines[: marks[0]]:
         key, _, value = line.partition(":")
         if key.strip() == "n_points" and value.strip() != str(len(body)):

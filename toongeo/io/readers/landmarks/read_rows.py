@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from toongeo.io.landmarks.landmark_schemes import SCHEMES
-from toongeo.io.readers.landmarks.file_text import file_text
+from toongeo.io.readers.landmarks.file_contents import file_lines
 from toongeo.io.readers.landmarks.number_words import number, words
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks, face_points
 
@@ -28,8 +28,7 @@ def read_rows(path: Path, shift: int = 0) -> RawLandmarks:
     ValueError, OSError
         If it is no text, or a line is something else: says which.
     """
-    lines = list(enumerate(file_text(path).splitlines(), start=1))
-    lines = [(k, line) for k, line in lines if line.strip() and not line.lstrip().startswith("#")]
+    lines = file_lines(path)
     if lines and all(number(word) is None for word in words(lines[0][1])):
         lines = lines[1:]
     if lines and all(len(line) >= _WORDS_OF_A_FACE and len(words(line)) >= _WORDS_OF_A_FACE for _, line in lines):

@@ -1,11 +1,12 @@
 """Landmarks as ``.csv``: OpenFace's tables, tables with columns x and y, or plain rows."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from toongeo.io.readers.landmarks.file_text import file_text
+from toongeo.io.readers.landmarks.file_contents import file_lines
 from toongeo.io.readers.landmarks.number_words import number
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks, face_points
 from toongeo.io.readers.landmarks.read_rows import read_rows
@@ -28,11 +29,7 @@ def read_table(path: Path, shift: int = 0) -> RawLandmarks:
         If a row has another number of cells than the heading or a cell is no number, OpenFace was run without 2D
         landmarks, or as `read_rows`.
     """
-    lines = [
-        (k, line)
-        for k, line in enumerate(file_text(path).splitlines(), start=1)
-        if line.strip() and not line.lstrip().startswith("#")
-    ]
+    lines = file_lines(path)
     heading = _cells(lines[0][1]) if lines else []
     columns = {match.groups(): k for k, name in enumerate(heading) if (match := _COORDINATE.fullmatch(name))}
     lowered = [name.lower() for name in heading]
@@ -67,12 +64,12 @@ def _wide(
     return RawLandmarks(kind, tuple(map(tuple, frames.values())))
 
 
-def _rows(lines: list[tuple[int, str]], heading: list[str], path: Path) -> list[_Row]:
-    rows = [(k, _cells(line)) for k, line in lines[1:]]
-    for k, cells in rows:
+def _rows(lines: list[tuple[int, str]], heading: list[str], path: Path) -> Iterator[_Row]:
+    for k, line in lines[1:]:
+        cells = _cells(line)
         if len(cells) != len(heading):
             raise ValueError(f"path: expected {len(heading)} cells, got {len(cells)} in line {k} of {path}")
-    return rows
+        yield k, cells
 
 
 def _cells(line: str) -> list[str]:

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from pathlib import Path
 from xml.parsers import expat
 
-from toongeo.io.readers.landmarks.file_text import file_bytes
+from toongeo.io.readers.landmarks.file_contents import file_bytes
 
 __all__ = ["xml_elements"]
 
-_MOST_MB = 256
+_MOST_MB = 64
 
 
 def xml_elements(path: Path, visit: Callable[[str, dict[str, str], int], None]) -> None:
