@@ -19,7 +19,7 @@ from renders.skin_paint import painted_skin
 from renders.surroundings import background, paint_back_hair, paint_clothes
 from renders.template import template
 from renders.view import View, random_view
-from toongeo.geometry.vertex_normals import vertex_normals
+from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.render.rasterize import rasterize
 
 __all__ = ["Part", "Scene", "random_scene"]
