@@ -1,4 +1,4 @@
-"""``toongeo make``: a picture and its landmarks into a file."""
+"""``toongeo make``: a picture into a file."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -6,17 +6,19 @@ from typing import Any
 
 from tqdm import tqdm
 
+from toongeo.app.landmark_source import LandmarkSource
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.avatar.save_avatar import writer_for
-from toongeo.io import read_image, read_landmarks
+from toongeo.io import read_image
+from toongeo.model.ibug68 import INNER
 
 
 def make(
     image: Path,
-    landmarks: Path,
     output: Path,
+    source: LandmarkSource,
     *,
     texture_size: int = 1024,
     crop: Crop = "head",
@@ -27,11 +29,13 @@ def make(
 ) -> Avatar:
     """Read, build, save and report, with a progress line a stage.
 
-    The parameters are those of :func:`toongeo.make_avatar` and of :meth:`toongeo.Avatar.save`, whose other options are
-    in ``options``.
+    The source gives the landmarks. The other parameters are those of :func:`toongeo.make_avatar` and of
+    :meth:`toongeo.Avatar.save`, whose other options are in ``options``.
 
     Raises
     ------
+    UnsureLandmarksError
+        If landmarks were found that are not sure, and the source does not accept them.
     ValueError, OSError, ImportError
         For bad input or an output that cannot be written; the output is checked before the work.
     """
@@ -39,7 +43,12 @@ def make(
     writer_for(output, format, saving)
     if not output.parent.is_dir():
         raise OSError(f"output: no folder {output.parent} to write {output.name} to")
-    img, points = read_image(image), read_landmarks(landmarks)
+    img = read_image(image)
+    points, found = source.landmarks(image, img)
+    if found is not None:
+        print(
+            f"landmarks found: face {100 * found.score:.0f} %, points {100 * found.confidence[INNER].mean():.0f} % sure"
+        )
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
         def announce(stage: str) -> None:

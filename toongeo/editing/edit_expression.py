@@ -6,13 +6,13 @@ import numpy as np
 
 from toongeo.editing.expression_editor import ExpressionEditor
 from toongeo.model import MorphableModel
-from toongeo.pipeline import fit_3dmm
+from toongeo.pipeline import detect_landmarks, fit_3dmm
 from toongeo.protocols import TextureGenerator
 
 
 def edit_expression(
     img: np.ndarray,
-    landmarks: np.ndarray,
+    landmarks: np.ndarray | None = None,
     weights: Mapping[str, float] | np.ndarray | None = None,
     *,
     reference: tuple[np.ndarray | None, np.ndarray] | None = None,
@@ -23,8 +23,9 @@ def edit_expression(
     Parameters
     ----------
     img : (H, W, 3) uint8 RGB
-    landmarks : (68, 2) float, px
-        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
+    landmarks : (68, 2) float, px, optional
+        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing. None: those of the largest face
+        that :func:`toongeo.detect_landmarks` finds.
     weights : mapping of name to weight, (46,) array or (54,) array
         The expression of the result. 1 is the full expression; names that are left out are 0.
     reference : (picture or None, landmarks), optional
@@ -46,6 +47,8 @@ def edit_expression(
     if (weights is None) == (reference is None):
         raise ValueError("weights, reference: expected one of them, got " + ("neither" if weights is None else "both"))
     wanted = weights if reference is None else reference_weights(reference)
+    if landmarks is None:
+        landmarks = detect_landmarks(img).points
     return ExpressionEditor(img, landmarks, generator=generator).frame(wanted)
 
 

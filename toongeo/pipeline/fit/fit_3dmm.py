@@ -26,6 +26,7 @@ from toongeo.pipeline.fit.problem.joint_fit import joint_fit
 from toongeo.pipeline.fit.problem.landmark_problem import LandmarkProblem
 from toongeo.pipeline.fit.problem.solution import Solution
 from toongeo.pipeline.fit.problem.starting_problem import starting_problem
+from toongeo.pipeline.landmarks.detect_landmarks import detect_landmarks
 from toongeo.protocols import Coefficients, Regressor
 
 __all__ = ["fit_3dmm"]
@@ -36,7 +37,7 @@ Floats = NDArray[np.float64]
 @overload
 def fit_3dmm(
     img: NDArray[np.uint8] | None,
-    landmarks: ArrayLike,
+    landmarks: ArrayLike | None = None,
     *,
     model: MorphableModel | None = None,
     algorithm: str = "LD_LBFGS",
@@ -50,7 +51,7 @@ def fit_3dmm(
 @overload
 def fit_3dmm(
     img: list[NDArray[np.uint8] | None] | list[NDArray[np.uint8]] | list[None],
-    landmarks: Sequence[ArrayLike],
+    landmarks: Sequence[ArrayLike | None] | None = None,
     *,
     model: MorphableModel | None = None,
     algorithm: str = "LD_LBFGS",
@@ -63,7 +64,7 @@ def fit_3dmm(
 
 def fit_3dmm(
     img: Any,
-    landmarks: Any,
+    landmarks: Any = None,
     *,
     model: MorphableModel | None = None,
     algorithm: str = "LD_LBFGS",
@@ -90,9 +91,9 @@ def fit_3dmm(
     img : (H, W, 3) uint8 array or None, or a list of these
         The picture; without the photometric term only its size is looked at, to check the landmarks against. A list:
         pictures of one person, who has one identity in all of them, and an expression and a pose in each.
-    landmarks : (68, 2) array_like, px
+    landmarks : (68, 2) array_like, px, optional
         iBUG-68 order, or as ``scheme`` says; x right, y down, integer = pixel centre. A NaN row is a missing point.
-        With a list of pictures, a list of as many.
+        With a list of pictures, a list of as many. None: those of the largest face that `detect_landmarks` finds.
     model : MorphableModel, optional
         `default_model` if None.
     algorithm : str
@@ -118,8 +119,8 @@ def fit_3dmm(
         If the landmarks are not numbers, have another shape, hold infinities, are fewer than 6, coincide, lie on a
         line or outside the picture; the picture is not (H, W, 3) uint8; the algorithm is not known. If a regressor
         returns something else than coefficients, or of another shape, or there are more or fewer landmarks than
-        pictures. If ``photometric`` is asked for with no picture or several, with ``adjust``, a landmark table or a
-        perspective camera.
+        pictures. If there are no landmarks and no face is found, or no picture to look in. If ``photometric`` is asked
+        for with no picture or several, with ``adjust``, a landmark table or a perspective camera.
     RuntimeError
         If the optimizer fails.
 
@@ -193,6 +194,7 @@ class _Task:
 
 
 def _pairs(imgs: list[Any], landmarks: Any) -> list[tuple[Any, Any]]:
+    landmarks = [None] * len(imgs) if landmarks is None else landmarks
     if len(imgs) == 0 or len(landmarks) != len(imgs):
         raise ValueError(f"landmarks: expected one set for each of {len(imgs)} pictures, got {len(landmarks)}")
     return list(zip(imgs, landmarks, strict=True))
@@ -200,13 +202,15 @@ def _pairs(imgs: list[Any], landmarks: Any) -> list[tuple[Any, Any]]:
 
 def _task(
     img: NDArray[np.uint8] | None,
-    landmarks: ArrayLike,
+    landmarks: ArrayLike | None,
     model: MorphableModel,
     options: FitOptions,
     regressor: Regressor | None,
 ) -> _Task:
     if img is not None:
         check_image(img)
+    if landmarks is None:
+        landmarks = _detected(img, options)
     image_shape, table = None if img is None else img.shape, None
     warnings: list[str] = []
     if isinstance(options.scheme, str):
@@ -221,6 +225,14 @@ def _task(
     with one_thread():
         problem = starting_problem(model, pixels, options, guess, table, _centre(image_shape))
     return _Task(model, problem, pixels, guess, warnings)
+
+
+def _detected(img: NDArray[np.uint8] | None, options: FitOptions) -> NDArray[np.float64]:
+    if img is None:
+        raise ValueError("landmarks: expected points where there is no picture to find them in, got None")
+    if not (isinstance(options.scheme, str) and options.scheme == "ibug68"):
+        raise ValueError(f"scheme: expected 'ibug68' for landmarks that are to be found, got {options.scheme!r}")
+    return detect_landmarks(img).points
 
 
 def _face(task: _Task, solution: Solution, algorithm: str, seconds: float) -> FaceFit:

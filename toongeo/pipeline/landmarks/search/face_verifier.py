@@ -19,7 +19,7 @@ class FaceVerifier:
     weights: NDArray[np.float32]
     offsets: NDArray[np.float32]
 
-    def score(self, grey: NDArray[np.uint8], points: NDArray[np.float64], shape: NDArray[np.float64]) -> float:
+    def score(self, grey: np.ndarray, points: NDArray[np.float64], shape: NDArray[np.float64]) -> float:
         """The larger, the more a face: of the picture aligned by its points (68, 2) with the mean shape."""
         row = whole_descriptor(face_crop(grey, similarity_onto(points, shape)))
         with one_thread():

@@ -2,7 +2,6 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 __all__ = ["DIRECTIONS", "orientation_maps"]
 
@@ -14,7 +13,7 @@ _LOBES /= np.float32(1 - _SHARPNESS)
 _SOBEL = 1 / 4  # grey levels a px
 
 
-def orientation_maps(grey: NDArray[np.uint8], cell: int, blur: float) -> tuple[NDArray[np.float32], ...]:
+def orientation_maps(grey: np.ndarray, cell: int, blur: float) -> tuple[np.ndarray, np.ndarray]:
     """Gradient strength by direction, averaged over cells: two arrays (h // cell, w // cell, 4) float32.
 
     A gradient g counts for the direction d with ``max(0, g.d - |g| cos 45) / (1 - cos 45)``: nearly the soft
@@ -33,9 +32,10 @@ def orientation_maps(grey: NDArray[np.uint8], cell: int, blur: float) -> tuple[N
     down = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=_SOBEL)
     slopes = cv2.merge([across, down, cv2.magnitude(across, down)])
     size = grey.shape[1] // cell, grey.shape[0] // cell
-    maps = []
-    for half in (_LOBES[:4], _LOBES[4:]):  # OpenCV takes four channels at a time
-        strength = cv2.transform(slopes, half)
+
+    def averaged(lobes: np.ndarray) -> np.ndarray:
+        strength = cv2.transform(slopes, lobes)
         np.maximum(strength, 0, out=strength)
-        maps.append(cv2.resize(strength, size, interpolation=cv2.INTER_AREA))
-    return tuple(maps)
+        return cv2.resize(strength, size, interpolation=cv2.INTER_AREA)
+
+    return averaged(_LOBES[:4]), averaged(_LOBES[4:])  # OpenCV takes four channels at a time
