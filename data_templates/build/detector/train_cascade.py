@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from multiprocessing import get_context
-
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from detector.linear import principal_axes, ridge_weights, rounded, signed
 from detector.samples import SIZE_PX, Samples
+from detector.workers import mapped
 from toongeo.model.ibug68 import MIRROR
 from toongeo.pipeline.landmarks.search.cascade import Cascade, CascadeStage, realigned, shape_terms
 from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX, face_crop, point_descriptors
@@ -97,12 +95,10 @@ def _rows(pictures, matrices, points, stage, cascade, processes) -> NDArray[np.f
     global _SHARED
     _SHARED = pictures, matrices, points, stage, cascade
     pieces = np.array_split(np.arange(len(points)), _PARTS)
-    with get_context("fork").Pool(processes) as pool:
-        return np.concatenate(pool.map(_rows_of, pieces, chunksize=1))
+    return np.concatenate(mapped(_rows_of, pieces, processes))
 
 
 def _rows_of(chosen: NDArray[np.int64]) -> NDArray[np.float32]:
-    cv2.setNumThreads(1)
     pictures, matrices, points, stage, cascade = _SHARED
     out = np.empty((len(chosen), 68 * _AXES + _SHAPES + 1), np.float32)
     for row, k in zip(out, chosen, strict=True):

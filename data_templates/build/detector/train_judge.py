@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from multiprocessing import get_context
-
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from detector.samples import Samples
+from detector.workers import mapped
 from toongeo.model.ibug68 import PARTS
 from toongeo.pipeline.landmarks.search.detector_file import DetectorParts
 from toongeo.pipeline.landmarks.search.face_judge import FaceJudge, point_cues
@@ -31,8 +29,7 @@ def train_judge(
     global _SHARED
     _SHARED = samples, parts, clutter
     jobs = [("face", k) for k in range(len(samples.grey))] + [("clutter", k) for k in range(len(clutter))]
-    with get_context("fork").Pool(processes) as pool:
-        results = pool.map(_judged, jobs, chunksize=4)
+    results = mapped(_judged, jobs, processes, together=4)
     faces = [entry for part, _ in results for entry in part]
     cues, real = np.array([c for c, _ in faces]), np.array([r for _, r in faces], float)
     weight = np.where(real > 0, 1.0, 0.5 * real.sum() / max((1 - real).sum(), 1))
@@ -53,7 +50,6 @@ _SHARED: tuple = ()  # what forked processes inherit instead of receiving it
 
 def _judged(job: tuple[str, int]):
     """Cues of candidates with whether each is the face, and for the face the cues of points with which are right."""
-    cv2.setNumThreads(1)
     samples, parts, clutter = _SHARED
     kind, k = job
     grey = samples.grey[k] if kind == "face" else clutter[k]

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from multiprocessing import get_context
-
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from detector.linear import principal_axes, ridge_weights
 from detector.samples import Samples, mirrored
+from detector.workers import mapped
 from toongeo.pipeline.landmarks.search.cascade import PART_PX, PART_RADIUS_PX, Cascade, CascadeStage, PartCascade
 from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX, face_crop, point_descriptors
 from toongeo.pipeline.landmarks.search.frames import applied, box_matrix, box_of, similarity_onto
@@ -68,13 +66,11 @@ def _ends(samples: Samples, cascade: Cascade, processes: int, mirror: bool):
     global _SHARED
     _SHARED = samples, cascade
     jobs = [(k, side) for side in range(1 + mirror) for k in range(len(samples.grey))]
-    with get_context("fork").Pool(processes) as pool:
-        found = pool.map(_end, jobs, chunksize=32)
+    found = mapped(_end, jobs, processes, together=32)
     return [np.array(column) for column in zip(*found, strict=True)]
 
 
 def _end(job: tuple[int, int]):
-    cv2.setNumThreads(1)
     samples, cascade = _SHARED
     k, side = job
     rng = np.random.default_rng([12, k, side])

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from multiprocessing import get_context
-
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from detector.samples import Samples, mirrored
 from detector.views import view_classifiers, view_of
+from detector.workers import mapped
 from toongeo.pipeline.landmarks.search.cascade import Cascade
 from toongeo.pipeline.landmarks.search.face_boxes import BoxTemplates, face_boxes
 from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX, face_crop, whole_descriptor
@@ -38,8 +36,7 @@ def train_verifier(
     global _SHARED
     _SHARED = samples, boxes, cascade, clutter
     jobs = [("face", k) for k in range(len(samples.grey))] + [("clutter", k) for k in range(len(clutter))]
-    with get_context("fork").Pool(processes) as pool:
-        results = [entry for part in pool.imap(_described, jobs, chunksize=16) for entry in part]
+    results = [entry for part in mapped(_described, jobs, processes, together=16) for entry in part]
     rows = np.array([row for row, _ in results])
     views = np.array([view for _, view in results])
     faces, negatives = rows[views >= 0], rows[views < 0]
@@ -58,7 +55,6 @@ _SHARED: tuple = ()  # what forked processes inherit instead of receiving it
 
 def _described(job: tuple[str, int]) -> list[tuple[NDArray[np.float32], int]]:
     """Descriptors after the cascade, each with the view of the face or -1."""
-    cv2.setNumThreads(1)
     samples, boxes, cascade, clutter = _SHARED
     kind, k = job
     rng = np.random.default_rng([k, kind == "face"])
