@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from detector.clutter import clutter_pictures
+from detector.clutter import CALIBRATION, CLUTTER, clutter_pictures
 from detector.samples import Samples, rendered_samples
 from detector.train_boxes import train_boxes
 from detector.train_cascade import train_cascade
@@ -56,13 +56,13 @@ def main() -> None:
 
 def trained_parts(samples: Samples, held_out: Samples, processes: int, say) -> DetectorParts:
     """Every part of the detector; `held_out` calibrates and chooses, and is not trained on."""
-    clutter = clutter_pictures(np.random.default_rng(3), _PROCEDURAL)
+    clutter = clutter_pictures(np.random.default_rng(3), CLUTTER, _PROCEDURAL)
     boxes = train_boxes(_first(samples, 2 * _BOX_HEADS), clutter, say=say)
     cascade = train_cascade(samples, held_out, processes, say=say)
     cascade = replace(cascade, parts=train_parts(samples, held_out, cascade, processes, say=say))
     verifier = train_verifier(_first(samples, 2 * _VERIFIER_HEADS), boxes, cascade, clutter, processes, say=say)
     parts = DetectorParts(boxes, cascade, verifier, _UNTRAINED)
-    fresh = clutter_pictures(np.random.default_rng(4), _PROCEDURAL)[-_PROCEDURAL:]
+    fresh = clutter_pictures(np.random.default_rng(4), CALIBRATION, _PROCEDURAL)
     judge = train_judge(_first(held_out, 2 * _JUDGE_HEADS), parts, fresh, processes, say=say)
     return DetectorParts(boxes, cascade, verifier, judge)
 

@@ -10,9 +10,10 @@ import skimage.data
 from numpy.typing import NDArray
 from renders.surroundings import background
 
-__all__ = ["CLUTTER", "clutter_pictures"]
+__all__ = ["CALIBRATION", "CLUTTER", "clutter_pictures"]
 
-# Of scikit-image's wheel, in the public domain or CC0; chelsea.png, horse.png and others are kept for tests.
+# Of scikit-image's wheel, in the public domain or CC0; chelsea.png, horse.png and others are kept for tests. The first
+# are trained on, the others calibrate.
 CLUTTER = (
     "coffee.png",
     "rocket.jpg",
@@ -24,14 +25,15 @@ CLUTTER = (
     "text.png",
     "clock_motion.png",
 )
+CALIBRATION = ("retina.jpg", "cell.png", "microaneurysms.png")
 _LONGEST_PX = 480
 
 
-def clutter_pictures(rng: np.random.Generator, procedural: int) -> list[NDArray[np.uint8]]:
+def clutter_pictures(rng: np.random.Generator, names: tuple[str, ...], procedural: int) -> list[NDArray[np.uint8]]:
     """Grey pictures (h, w): each photograph in four turns and at a second size, and so many procedural ones."""
     folder = Path(skimage.data.__file__).parent
     pictures = []
-    for name in CLUTTER:
+    for name in names:
         grey = cv2.imread(str(folder / name), cv2.IMREAD_GRAYSCALE)
         scale = _LONGEST_PX / max(grey.shape)
         grey = cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)

@@ -10,7 +10,7 @@ from detector.workers import mapped
 from toongeo.model.ibug68 import PARTS
 from toongeo.pipeline.landmarks.search.detector_file import DetectorParts
 from toongeo.pipeline.landmarks.search.face_judge import FaceJudge, point_cues
-from toongeo.pipeline.landmarks.search.find_faces import candidate_faces
+from toongeo.pipeline.landmarks.search.find_faces import TILTS, candidate_faces
 from toongeo.pipeline.landmarks.search.frames import applied, box_of, inverse
 from toongeo.pipeline.landmarks.search.passes import face_patch, run_passes
 
@@ -55,6 +55,8 @@ def _judged(job: tuple[str, int]):
     grey = samples.grey[k] if kind == "face" else clutter[k]
     candidates = candidate_faces(grey, parts)
     if kind == "clutter":
+        for tilt in TILTS:
+            candidates += candidate_faces(grey, parts, tilt)
         return [(candidate.cues, False) for candidate in candidates], None
     truth = samples.landmarks[k]
     box, out, best = box_of(truth), [], None

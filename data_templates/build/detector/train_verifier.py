@@ -80,6 +80,6 @@ def _run(grey: NDArray[np.uint8], box: NDArray[np.float64], cascade: Cascade):
     """Points in the picture, and the descriptor of the crop they align."""
     patch = face_patch(grey, box)
     start = composed(box_matrix(box, CROP_PX, RADIUS_PX), inverse(patch.matrix))
-    points = cascade.run(patch.grey, start)
+    points = cascade.rough(patch.grey, start, len(cascade.stages))  # as at the first look
     row = whole_descriptor(face_crop(patch.grey, similarity_onto(points, cascade.shape)))
     return applied(inverse(patch.matrix), points), row

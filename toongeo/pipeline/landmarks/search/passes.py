@@ -62,11 +62,14 @@ def face_patch(grey: np.ndarray, box: NDArray[np.float64]) -> FacePatch:
 def run_passes(grey: np.ndarray, points: NDArray[np.float64], cascade: Cascade, *, first_look: bool = False) -> Passes:
     """The cascade from five starts about a face found roughly at `points` (68, 2) px, and from their mirror images.
 
-    At the `first_look`, from three.
+    The `first_look` is from three, not mirrored, and ends before the parts.
     """
     start = similarity_onto(points, cascade.shape)
-    found = [cascade.run(grey, _moved(start, move)) for move in (_STARTS[:_FIRST_LOOK] if first_look else _STARTS)]
-    if not first_look:
+    if first_look:
+        stages = len(cascade.stages)
+        found = [cascade.rough(grey, _moved(start, move), stages) for move in _STARTS[:_FIRST_LOOK]]
+    else:
+        found = [cascade.run(grey, _moved(start, move)) for move in _STARTS]
         flipped = np.ascontiguousarray(grey[:, ::-1])
         start = similarity_onto(_mirrored(points, grey), cascade.shape)
         found += [_mirrored(cascade.run(flipped, _moved(start, move)), grey) for move in _STARTS]
