@@ -21,13 +21,15 @@ from pathlib import Path
 
 import numpy as np
 import skimage.data
-from snapping import PORTRAITS, outer_eyes, pictures
+from pictures import FOLDER, pictures, roles
+from snapping import outer_eyes
 
 from toongeo import detect_faces, read_image, read_landmarks
 from toongeo.model.ibug68 import INNER
 from toongeo.model.mediapipe478 import VERTICES
 
-# Pictures of scikit-image without a face; the first nine were clutter in training, the others were not.
+# Pictures of scikit-image without a face; the first nine and cell, retina and microaneurysms were
+# clutter in training, the others were not.
 FACELESS = (
     *("coffee.png", "rocket.jpg", "brick.png", "grass.png", "gravel.png", "hubble_deep_field.jpg", "moon.png"),
     *("text.png", "clock_motion.png", "chelsea.png", "horse.png", "coins.png", "page.png", "motorcycle_left.png"),
@@ -65,30 +67,33 @@ def row(name: str, who: str, results: list[tuple[bool, float, float]], seconds: 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folders", nargs="*", type=Path, default=[PORTRAITS])
+    parser.add_argument("folders", nargs="*", type=Path, default=[FOLDER])
     parser.add_argument("--mediapipe", metavar="PYTHON")
     parser.add_argument("--each", action="store_true", help="a line for each picture, too")
     arguments = parser.parse_args()
     print("| pictures | by | found % | inner 51, median / mean of found | <= 8 % | all 68 | s |")
     print("|---|---|---|---|---|---|---|")
+    names: list[str] = []
     for folder in arguments.folders:
-        pairs = pictures(folder)
-        truths = [read_landmarks(points) for _, points in pairs]
+        found_pictures = pictures([folder])
+        names += [picture.name for picture in found_pictures]
+        truths = [read_landmarks(picture.landmarks) for picture in found_pictures]
         results, seconds = [], []
-        for (path, _), truth in zip(pairs, truths, strict=True):
-            img = read_image(path)
+        for picture, truth in zip(found_pictures, truths, strict=True):
+            img = read_image(picture.image)
             start = time.process_time()
             faces = detect_faces(img)
             seconds.append(time.process_time() - start)
             results.append(errors(faces[0].points if faces else None, truth))
             if arguments.each:
                 sure = f"{faces[0].score:.2f} {faces[0].confidence[INNER].mean():.2f}" if faces else "-"
-                print(f"  {path.stem}: {results[-1][1]:.3f} {results[-1][2]:.3f}, {len(faces)} faces, {sure}")
+                print(f"  {picture.name}: {results[-1][1]:.3f} {results[-1][2]:.3f}, {len(faces)} faces, {sure}")
         print(row(folder.name, "toongeo", results, float(np.median(seconds))), flush=True)
         if arguments.mediapipe:
-            rival = rival_points(arguments.mediapipe, [path for path, _ in pairs])
+            rival = rival_points(arguments.mediapipe, [picture.image for picture in found_pictures])
             found = [errors(points, truth) for points, truth in zip(rival, truths, strict=True)]
             print(row(folder.name, "MediaPipe", found, None), flush=True)
+    print(roles("detection", names))
     folder = Path(skimage.data.__file__).parent
     false = {name: len(detect_faces(read_image(folder / name))) for name in FACELESS}
     where = ", ".join(name for name, count in false.items() if count) or "nowhere"

@@ -183,7 +183,7 @@ def test_obj_keeps_vertices_and_names_its_texture(avatar, tmp_path):
     data = read_obj(tmp_path / "face.obj")
     n = len(avatar.vertices())
     np.testing.assert_array_equal(data.vertices[:n], avatar.vertices())
-    assert (tmp_path / "face.png").exists() and "map_Kd face.png" in (tmp_path / "face.mtl").read_text()
+    assert (tmp_path / "face_texture.png").exists() and "map_Kd face_texture.png" in (tmp_path / "face.mtl").read_text()
 
 
 def test_ply_has_the_colours_of_the_texture_and_its_uv(avatar, tmp_path):
@@ -245,3 +245,14 @@ def test_missing_landmarks_are_worked_around(cartoon):
     result = make_avatar(img, landmarks)
     assert np.isfinite(result.vertices()).all()
     assert 100 * result.report.aligned["inner51"] <= 0.1
+
+
+def test_points_of_a_detector_without_a_jaw_or_on_a_table_make_an_avatar(cartoon, model):
+    img, landmarks = cartoon("moustache_man")
+    outer_eyes = np.linalg.norm(landmarks[45] - landmarks[36])
+    at = np.r_[17:68]
+    for points, scheme in ((landmarks[at], "ibug51"), (landmarks[at], model.landmarks[at])):
+        made = make_avatar(img, points, scheme=scheme, texture_size=64)
+        found = made.face.project(made.vertices(made.pose)[made.face.landmark_vertices])
+        error = np.linalg.norm(found - landmarks, axis=1)[17:48]  # a table's points are fitted, not met
+        assert error.mean() < (0.01 if isinstance(scheme, str) else 0.08) * outer_eyes

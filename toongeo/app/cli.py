@@ -9,6 +9,11 @@ from toongeo import __version__
 from toongeo.app.bench.commands import add_bench
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
+__all__ = ["main"]
+
+
+_SCHEME = "of the landmarks: ibug68 (default), ibug51, ibug49 or mediapipe478, all in px"
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line.
@@ -57,6 +62,7 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--author", action="append", metavar="NAME", help="for the licence of a .vrm; may be repeated")
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
     make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
+    make.add_argument("--scheme", default="ibug68", metavar="NAME", help=_SCHEME)
     make.set_defaults(run=_make)
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
@@ -100,6 +106,7 @@ def _add_drive(commands: Any) -> None:
     drive.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4 or .glb")
     drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
     drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
+    drive.add_argument("--scheme", default="ibug68", metavar="NAME", help=_SCHEME)
     drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
     drive.set_defaults(run=_drive)
 
@@ -124,7 +131,7 @@ def _make(options: argparse.Namespace) -> None:
     make(
         options.image,
         options.output,
-        LandmarkSource(options.landmarks, options.face, options.accept),
+        LandmarkSource(options.landmarks, options.scheme, options.face, options.accept),
         texture_size=options.texture_size,
         crop=options.crop,
         snap=options.snap,
@@ -173,6 +180,7 @@ def _drive(options: argparse.Namespace) -> None:
         size=options.size,
         fps=options.fps,
         take_fps=options.take_fps,
+        scheme=options.scheme,
     )
 
 

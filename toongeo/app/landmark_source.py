@@ -17,14 +17,15 @@ __all__ = ["LandmarkSource"]
 
 @dataclass(frozen=True)
 class LandmarkSource:
-    """A file of landmarks or, without one, which face to find; `accept` takes points that are not sure."""
+    """A file of landmarks of a scheme or, without one, which face to find; `accept` takes points that are not sure."""
 
     file: Path | None = None
+    scheme: str = "ibug68"
     face: int = 0
     accept: bool = False
 
     def landmarks(self, image: Path, img: NDArray[np.uint8]) -> tuple[NDArray[np.float64], LandmarkDetection | None]:
-        """Landmarks (68, 2) px of the picture, and how they were found if they were.
+        """Landmarks (k, 2) px of the picture, and how they were found if they were.
 
         Raises
         ------
@@ -34,7 +35,9 @@ class LandmarkSource:
             If the file cannot be read, or there is no such face.
         """
         if self.file is not None:
-            return read_landmarks(self.file), None
+            return read_landmarks(self.file, scheme=self.scheme), None
+        if self.scheme != "ibug68":
+            raise ValueError(f"scheme: expected --landmarks FILE with --scheme, got {self.scheme!r} alone")
         found = detect_landmarks(img, face=self.face)
         if not (found.is_sure or self.accept):
             trust = 100 * float(found.confidence[INNER].mean())

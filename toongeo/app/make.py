@@ -6,6 +6,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+from toongeo.app.check_output import check_output
 from toongeo.app.landmark_source import LandmarkSource
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.crop_faces import Crop
@@ -13,6 +14,8 @@ from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.avatar.save_avatar import writer_for
 from toongeo.io import read_image
 from toongeo.model.ibug68 import INNER
+
+__all__ = ["make"]
 
 
 def make(
@@ -37,18 +40,17 @@ def make(
     UnsureLandmarksError
         If landmarks were found that are not sure, and the source does not accept them.
     ValueError, OSError, ImportError
-        For bad input or an output that cannot be written; the output is checked before the work.
+        For bad input or an output that cannot be written, or would replace a file that is read or was not written for
+        it; the output is checked before the work.
     """
     saving = {"crop": crop, **(options or {})}
     writer_for(output, format, saving)
-    if not output.parent.is_dir():
-        raise OSError(f"output: no folder {output.parent} to write {output.name} to")
+    check_output(output, {"image": image, "landmarks": source.file}, format)
     img = read_image(image)
     points, found = source.landmarks(image, img)
     if found is not None:
-        print(
-            f"landmarks found: face {100 * found.score:.0f} %, points {100 * found.confidence[INNER].mean():.0f} % sure"
-        )
+        trust = 100 * found.confidence[INNER].mean()
+        print(f"landmarks found: face {100 * found.score:.0f} %, points {trust:.0f} % sure")
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
         def announce(stage: str) -> None:
@@ -56,7 +58,13 @@ def make(
             bar.set_description(stage)
 
         avatar = make_avatar(
-            img, points, snap=snap, photometric=photometric, texture_size=texture_size, progress=announce
+            img,
+            points,
+            snap=snap,
+            photometric=photometric,
+            texture_size=texture_size,
+            scheme=source.scheme,
+            progress=announce,
         )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")

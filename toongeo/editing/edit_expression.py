@@ -1,13 +1,17 @@
 """The same picture with another expression."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from toongeo.editing.expression_editor import ExpressionEditor
 from toongeo.model import MorphableModel
-from toongeo.pipeline import detect_landmarks, fit_3dmm
+from toongeo.pipeline import fit_3dmm
+from toongeo.pipeline.landmarks.given_or_found import given_or_found
 from toongeo.protocols import TextureGenerator
+
+__all__ = ["edit_expression", "reference_weights"]
 
 
 def edit_expression(
@@ -17,6 +21,7 @@ def edit_expression(
     *,
     reference: tuple[np.ndarray | None, np.ndarray] | None = None,
     generator: TextureGenerator | None = None,
+    scheme: Any = "ibug68",
 ) -> np.ndarray:
     """Change the expression of a picture or drawing, and nothing else of it (Chen et al. 2020, section 4.4).
 
@@ -32,6 +37,8 @@ def edit_expression(
         Instead of weights: a normal face whose expression is taken over.
     generator : TextureGenerator, optional
         What makes the new texture; :class:`toongeo.ClassicalTextureGenerator` unless another is given.
+    scheme : str or table
+        What the landmarks are, those of the reference too: see :func:`toongeo.make_avatar`.
 
     Returns
     -------
@@ -46,14 +53,13 @@ def edit_expression(
     """
     if (weights is None) == (reference is None):
         raise ValueError("weights, reference: expected one of them, got " + ("neither" if weights is None else "both"))
-    wanted = weights if reference is None else reference_weights(reference)
-    if landmarks is None:
-        landmarks = detect_landmarks(img).points
-    return ExpressionEditor(img, landmarks, generator=generator).frame(wanted)
+    wanted = weights if reference is None else reference_weights(reference, scheme=scheme)
+    landmarks = np.asarray(given_or_found(img, landmarks, scheme))
+    return ExpressionEditor(img, landmarks, generator=generator, scheme=scheme).frame(wanted)
 
 
 def reference_weights(
-    reference: tuple[np.ndarray | None, np.ndarray], model: MorphableModel | None = None
+    reference: tuple[np.ndarray | None, np.ndarray], model: MorphableModel | None = None, *, scheme: Any = "ibug68"
 ) -> dict[str, float]:
     """Named expression weights of a normal face, given as picture (or None) and landmarks.
 
@@ -67,7 +73,7 @@ def reference_weights(
     except (TypeError, ValueError):
         raise ValueError(f"reference: expected a picture and its landmarks, got {type(reference).__name__}") from None
     try:
-        fit = fit_3dmm(img, landmarks, model=model)
+        fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
     except ValueError as error:
         raise ValueError(f"reference: no face could be fitted ({error})") from error
     return fit.expression_weights()

@@ -17,12 +17,6 @@ def test_a_fit_finds_its_landmarks(render):
     assert found.identity.tobytes() == given.identity.tobytes()
 
 
-def test_a_fit_of_several_pictures_finds_them_in_each(render):
-    pictures = [render(0).picture, render(0).picture[:, 10:].copy()]
-    fits = fit_3dmm(pictures)
-    assert len(fits) == 2 and fits[0].identity.tobytes() == fits[1].identity.tobytes()
-
-
 @pytest.mark.parametrize("work", [fit_3dmm, make_avatar, lambda img: edit_expression(img, None, {"jawOpen": 1.0})])
 def test_without_a_face_there_is_an_error(work):
     with pytest.raises(NoFaceError, match="no face was found"):

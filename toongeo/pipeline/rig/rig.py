@@ -12,6 +12,8 @@ from toongeo.model.expression_weights import expression_weights
 from toongeo.pipeline.rig.add_rows import add_rows
 from toongeo.pipeline.rig.weight_vector import weight_vector
 
+__all__ = ["Rig"]
+
 
 @dataclass(frozen=True, eq=False)
 class Rig:
@@ -69,7 +71,7 @@ class Rig:
         beta = self.weights(weights)
         k = len(self.names)
         moved = np.zeros(self.neutral.size, np.float32)
-        add_rows(moved, self.deltas.reshape(k, -1), beta[:k])
+        add_rows(moved, self.deltas.reshape(k, moved.size), beta[:k])
         add_rows(moved, self.gaze.reshape(len(GAZE_NAMES), -1), beta[k:])
         return self.neutral + moved.reshape(self.neutral.shape)
 

@@ -1,4 +1,7 @@
-"""The optimisation problem of a photometric fit, and the way to its solution."""
+"""The optimisation problem of a photometric fit, and the way to its solution.
+
+Constants were chosen on rendered faces, seeds 20-29, and looked at on ten pictures (``benchmarks/photometric.py``).
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.colour.srgb import linear_to_srgb
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
@@ -29,8 +33,6 @@ from toongeo.pipeline.fit.problem.solution import PassState
 from toongeo.pipeline.fit.problem.starting_problem import starting_problem
 
 __all__ = ["PhotometricProblem"]
-
-Floats = NDArray[np.float64]
 
 _ALGORITHM = "LD_LBFGS"
 _MAX_ALBEDO = 3.0  # standard deviations
@@ -90,7 +92,7 @@ class PhotometricProblem:
         face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))
         plane = rectified_picture(img, mask, landmarks.frame, face, step=options.resolution, blur=options.blur)
         weight = fit.report.prior_weight
-        placement = PassState(fit.landmark_vertices, landmarks.trust, weight, landmarks.bounds[1])
+        placement = PassState(fit.landmark_vertices, landmarks.target.trust, weight, landmarks.search.bounds[1])
         trust = landmarks.renewed(placement, start, first=False).trust
         problem = cls(fit.model, landmarks, samples, plane, start, weight, trust, options)
         frozen = problem.frozen(problem.z0)
@@ -216,9 +218,9 @@ class PhotometricProblem:
 
     def _bounds(self) -> tuple[Floats, Floats]:
         albedo = np.full(self.samples.albedo.shape[1], _MAX_ALBEDO)
-        lower, upper = self.landmarks.bounds
+        lower, upper = self.landmarks.search.bounds
         # Counted from -1: of a pair at rest neither is let go.
-        upper = exclusive_bounds(upper, 1 + self.start, self.landmarks.opposites)
+        upper = exclusive_bounds(upper, 1 + self.start, self.landmarks.search.opposites)
         return np.concatenate([lower, -albedo]), np.concatenate([upper, albedo])
 
 

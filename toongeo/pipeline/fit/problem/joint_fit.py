@@ -23,10 +23,10 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
     if len(problems) == 1:
         return [problems[0].solve(algorithm)]
     options = problems[0].options
-    placements = [problem.placement(problem.start) for problem in problems]
-    parts = [problem.start for problem in problems]
+    placements = [problem.placement(problem.search.start) for problem in problems]
+    parts = [problem.search.start for problem in problems]
     passes = evaluations = 0
-    while passes < options.max_passes:
+    while passes < options.solver.max_passes:
         loss = JointLoss(
             [
                 problem.loss(placed.vertices, placed.prior_weight, placed.trust)
@@ -38,14 +38,14 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
             loss,
             x,
             bounds=(
-                loss.joined([problem.bounds[0] for problem in problems]),
+                loss.joined([problem.search.bounds[0] for problem in problems]),
                 loss.joined([placed.upper for placed in placements]),
             ),
             scale=1 / np.sqrt(loss.curvature(x)),
             algorithm=algorithm,
-            tolerance=options.tolerance,
-            max_evaluations=options.max_evaluations,
-            max_seconds=options.max_seconds,
+            tolerance=options.solver.tolerance,
+            max_evaluations=options.solver.max_evaluations,
+            max_seconds=options.solver.max_seconds,
         )
         parts = [loss.part(minimum.x, k) for k in range(len(problems))]
         passes, evaluations = passes + 1, evaluations + minimum.evaluations
