@@ -90,7 +90,7 @@ def row(picture: Picture) -> list[object]:
     lids = np.any([face.region(f"eyelid_{lid}_{name}") for lid in ("upper", "lower") for name in SIDES], axis=0)
     within = sum(inside((rig.neutral + shape)[skin], eyes) for shape in (0, *rig.deltas, *rig.gaze))
     half = sum(inside(rig.vertices(dict.fromkeys(BLINK, w))[lids], eyes) for w in (0.25, 0.5, 0.75))
-    closed = min(rig.report["closure_left"], rig.report["closure_right"])
+    closed = min(rig.report.closure_left, rig.report.closure_right)
     gained, excess, name = crossing(face, rig, drawn)
     seconds = np.diff(times)
     return [np.max(shown), gap.mean(), gap.max(), within, half, gained, excess, closed, *seconds[::-1], name]

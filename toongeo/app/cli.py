@@ -74,7 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument("--no-open", action="store_true", help="only print where the page is")
     view.set_defaults(run=_view)
     rig = commands.add_parser("rig", help="give a neutral head of any topology the expressions")
-    rig.add_argument("mesh", type=Path, metavar="MESH", help=".obj, mouth closed and eyes open")
+    rig.add_argument("mesh", type=Path, metavar="MESH", help=".obj .ply .stl .off .glb, mouth closed and eyes open")
     rig.add_argument(
         "--landmarks",
         type=Path,

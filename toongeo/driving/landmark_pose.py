@@ -85,11 +85,11 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
     shape = rig.neutral + np.tensordot(weights, rig.deltas, 1)
     pose = LandmarkPose(weights, *scaled_orthographic_pose(shape[there], pixels[there]))
     for step in range(_STEPS):
-        trust = there.astype(np.float64)
+        robust_weight = there.astype(np.float64)
         if step >= _PLAIN_STEPS:
             square = (np.nan_to_num(pose.errors(pixels, rig)) ** 2).sum(axis=1)
-            trust = there / (1 + square / max(_OUTLIER, 3 * noise) ** 2) ** 2
-        after = _step(rig, pixels, pose, trust, noise)
+            robust_weight = there / (1 + square / max(_OUTLIER, 3 * noise) ** 2) ** 2
+        after = _step(rig, pixels, pose, robust_weight, noise)
         change = np.abs(after.weights - pose.weights).max()
         pose = after
         if change < _SETTLED and step >= _PLAIN_STEPS:
@@ -97,13 +97,13 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
     return pose
 
 
-def _step(rig: LandmarkRig, pixels: Floats, pose: LandmarkPose, trust: Floats, noise: float) -> LandmarkPose:
+def _step(rig: LandmarkRig, pixels: Floats, pose: LandmarkPose, robust_weight: Floats, noise: float) -> LandmarkPose:
     """To the minimum of the loss with the face linear in weights and pose; everything in widths of the face."""
     k = len(rig.names)
-    there = trust > 0
+    there = robust_weight > 0
     J = _jacobian(rig, pose)[there].reshape(-1, k + _POSE)
     e = pose.errors(pixels, rig)[there].ravel()
-    precision = np.repeat(trust[there], 2) / noise**2
+    precision = np.repeat(robust_weight[there], 2) / noise**2
     H = (J.T * precision) @ J
     H[np.diag_indices(k)] += 1 / _SPREAD**2
     H[range(k, k + _POSE), range(k, k + _POSE)] += 1e-9 / noise**2

@@ -1,6 +1,7 @@
 """The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
 from toongeo.pipeline.align import AlignedFace as AlignedFace
+from toongeo.pipeline.align import AlignReport as AlignReport
 from toongeo.pipeline.align import align_face as align_face
 from toongeo.pipeline.fit import FaceFit as FaceFit
 from toongeo.pipeline.fit import FitOptions as FitOptions
@@ -26,6 +27,7 @@ from toongeo.pipeline.parse import snap_eyes as snap_eyes
 from toongeo.pipeline.rig import Animator as Animator
 from toongeo.pipeline.rig import Eyes as Eyes
 from toongeo.pipeline.rig import Rig as Rig
+from toongeo.pipeline.rig import RigReport as RigReport
 from toongeo.pipeline.rig import build_rig as build_rig
 from toongeo.pipeline.rig import close_lids as close_lids
 from toongeo.pipeline.rig import fit_eyes as fit_eyes

@@ -92,7 +92,7 @@ def test_the_minimum_is_one(model, face):
     problem = replace(problem, search=apart)
     fit = problem.solve("LD_LBFGS")
     placed = visible_landmarks(problem.basis, problem.search.start[:144], problem.frame.rotation0)
-    loss = problem.loss(placed, problem.options.prior_weight, problem.target.trust)
+    loss = problem.loss(placed, problem.options.prior_weight, problem.target.robust_weight)
     x = np.zeros(problem.unknowns.size)
     x[problem.unknowns.shape] = fit.coefficients
     # The pose is optimal for these coefficients: find it again from the camera.

@@ -26,7 +26,7 @@ from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.build_rig import build_rig
-from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.rig import Rig, RigReport
 from toongeo.protocols import LandmarkMapper
 
 __all__ = ["caricature_rig"]
@@ -97,7 +97,7 @@ def caricature_rig(
         deltas=deltas,
         gaze=np.zeros((len(GAZE_NAMES), *face.vertices.shape), np.float32),
         pose=pose,
-        report={"seconds": time.perf_counter() - started},
+        report=RigReport(time.perf_counter() - started),
     )
 
 

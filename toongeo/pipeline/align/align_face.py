@@ -24,10 +24,26 @@ from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.protocols import HeadCamera
 
-__all__ = ["AlignedFace", "align_face"]
+__all__ = ["AlignReport", "AlignedFace", "align_face"]
 
 _Laplacian = Literal["uniform", "cotangent"]
 _RIM_WEIGHT = 0.01  # of the landmarks' weight: what lies between them is interpolated, not seen
+
+
+@dataclass(frozen=True)
+class AlignReport:
+    """How an alignment went.
+
+    Attributes
+    ----------
+    rms_px, max_px : float
+        Distances of the anchors from their landmarks.
+    seconds : float
+    """
+
+    rms_px: float = 0.0
+    max_px: float = 0.0
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +60,7 @@ class AlignedFace:
     model : MorphableModel
     fit : FaceFit
         The coarse fit from which the face was deformed.
-    report : dict
-        ``rms_px`` and ``max_px`` of the anchors, ``seconds``.
+    report : AlignReport
     """
 
     vertices: np.ndarray
@@ -53,7 +68,7 @@ class AlignedFace:
     landmark_vertices: np.ndarray
     model: MorphableModel
     fit: FaceFit
-    report: dict[str, float]
+    report: AlignReport
 
     def __post_init__(self) -> None:
         read_only(self, "vertices", "landmark_vertices")
@@ -147,11 +162,11 @@ def align_face(
         landmark_vertices=at,
         model=fit.model,
         fit=fit,
-        report={
-            "rms_px": float(np.sqrt((error**2).mean())),
-            "max_px": float(error.max()),
-            "seconds": time.perf_counter() - started,
-        },
+        report=AlignReport(
+            rms_px=float(np.sqrt((error**2).mean())),
+            max_px=float(error.max()),
+            seconds=time.perf_counter() - started,
+        ),
     )
 
 

@@ -12,7 +12,7 @@ from toongeo.model import MorphableModel
 from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.feature_gains import feature_gains
-from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.rig import Rig, RigReport
 from toongeo.pipeline.rig.split_gaze import split_gaze
 
 __all__ = ["AT_ONCE", "build_rig"]
@@ -64,7 +64,7 @@ def build_rig(face: AlignedFace, *, gain: float | Literal["auto"] = 1.0) -> Rig:
         deltas=deltas,
         gaze=gaze,
         pose=np.zeros(len(names)),
-        report={"seconds": time.perf_counter() - started},
+        report=RigReport(time.perf_counter() - started),
     )
 
 

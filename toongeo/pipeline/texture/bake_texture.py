@@ -24,7 +24,7 @@ from toongeo.render.interpolate import blend_corners
 __all__ = ["bake_texture", "check_size"]
 
 _SIZES = (32, 8192)  # texels; in a smaller atlas the eyes would be lost, a larger one takes gigabytes
-# Cosines to the viewer between which a texel's trust in the picture grows from 0 to 1.
+# Cosines to the viewer between which a texel's confidence in the picture grows from 0 to 1.
 _OBLIQUE, _FRONTAL = 0.15, 0.45
 # By how much an expression may enlarge a triangle: up to the first, its drawing stays; from the second, none of it.
 _STRETCH = (2.0, 5.0)
@@ -89,16 +89,16 @@ def bake_texture(
     ids, weights = ids[front], weights[front]
     shared = np.ones(len(face.vertices)) if rig is None else _calm(face, rig)
     places, mirror = _Places(face, picture, shared, size), face.model.mirror
-    px, trust, footprint = places.of(np.arange(len(mirror)), ids, weights)
-    seen, doubtful = np.flatnonzero(trust > 0), np.flatnonzero(trust < 1)
-    over = sample_area(picture.pixels, px[seen], footprint[seen]), trust[seen, None]
+    px, confidence, footprint = places.of(np.arange(len(mirror)), ids, weights)
+    seen, doubtful = np.flatnonzero(confidence > 0), np.flatnonzero(confidence < 1)
+    over = sample_area(picture.pixels, px[seen], footprint[seen]), confidence[seen, None]
     # The mirrored side beneath the seen one.
     ids, weights = ids[doubtful], weights[doubtful]
-    px, trust, footprint = places.of(mirror, ids, weights)
-    lent = np.flatnonzero(trust > 0)
+    px, confidence, footprint = places.of(mirror, ids, weights)
+    lent = np.flatnonzero(confidence > 0)
     other = sample_area(picture.pixels, px[lent], footprint[lent])
     other = np.clip(other + blend_corners(offset.astype(np.float32)[face.faces], ids[lent], weights[lent]), 0, 255)
-    for rows, colour, share in ((front[doubtful[lent]], other, trust[lent, None]), (front[seen], *over)):
+    for rows, colour, share in ((front[doubtful[lent]], other, confidence[lent, None]), (front[seen], *over)):
         colours[rows] = share * colour + (1 - share) * colours[rows]
     image = np.zeros((size * size, 3), np.uint8)
     image[texels] = np.clip(np.rint(colours), 0, 255)
@@ -132,7 +132,7 @@ class _Places:
         self.shared = shared
 
     def of(self, order: np.ndarray, ids: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Pixels (k, 2) of the crop, trust (k,) in [0, 1] and footprint (k,) of texels, with vertices reordered."""
+        """Pixels (k, 2) of the crop, confidence (k,) in [0, 1], footprint (k,) of texels; vertices reordered."""
         values = np.column_stack([self.values[order], self.shared]).astype(np.float32)
         at = blend_corners(values[self.face.faces], ids, weights)
         px, height, width = at[:, :2], *self.picture.weight.shape
@@ -140,10 +140,10 @@ class _Places:
         row = np.clip(np.rint(px[:, 1]), 0, height - 1).astype(int)
         unhidden = ~self.picture.fragments.mask[row, column] | (self.front[row, column] - at[:, 3] < _HIDDEN_MM)
         inside = (px[:, 0] >= 0) & (px[:, 0] <= width - 1) & (px[:, 1] >= 0) & (px[:, 1] <= height - 1)
-        trust = at[:, 2] * at[:, 5] * unhidden * inside
-        used = trust > 0
-        trust[used] *= sample_image(self.picture.weight, px[used])
-        return px, trust, at[:, 4]
+        confidence = at[:, 2] * at[:, 5] * unhidden * inside
+        used = confidence > 0
+        confidence[used] *= sample_image(self.picture.weight, px[used])
+        return px, confidence, at[:, 4]
 
 
 def _footprints(face: AlignedFace, picture: FacePicture, size: int) -> np.ndarray:

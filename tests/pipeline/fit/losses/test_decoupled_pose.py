@@ -19,7 +19,7 @@ def problem(request, model, annotated, random_face):
 
 @pytest.fixture(scope="module")
 def loss(problem):
-    placed = problem.placement(problem.search.start)
+    placed = problem.first_state(problem.search.start)
     return problem.loss(placed.vertices, placed.prior_weight)
 
 

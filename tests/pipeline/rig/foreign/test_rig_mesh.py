@@ -74,6 +74,7 @@ def test_the_rig_is_in_the_frame_of_the_mesh(shuffled):
     np.testing.assert_array_equal(rig.vertices(), rig.neutral)
 
 
+@pytest.mark.slow
 def test_there_and_back_all_expressions_return(model, ict):
     spec = importlib.util.spec_from_file_location("register", Path(__file__).parents[4] / "benchmarks" / "register.py")
     benchmark = importlib.util.module_from_spec(spec)
@@ -186,6 +187,7 @@ def test_a_head_that_is_inside_out_is_refused(model, monkeypatch):
         check_winding(model.mean @ turned, front, model.mean[model.landmarks] @ turned, model)
 
 
+@pytest.mark.slow
 def test_a_model_without_eyes_will_do(model):
     """A front of the face alone, rigged by a model that has no regions but the front."""
     small = dataclasses.replace(
@@ -194,4 +196,4 @@ def test_a_model_without_eyes_will_do(model):
     front = model.faces[model.region("face")[model.faces].all(1)]
     rig = rig_mesh(model.mean, front, model.landmarks, model=small)
     unused = np.setdiff1d(np.arange(len(model.mean)), front)
-    assert not rig.deltas[:, unused].any() and rig.report["partnered"] > 0.9
+    assert not rig.deltas[:, unused].any() and rig.report.partnered > 0.9

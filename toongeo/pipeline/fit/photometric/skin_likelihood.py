@@ -34,7 +34,7 @@ def skin_likelihood(plane: RectifiedPicture, core: Floats) -> NDArray[np.float32
     core : (k, 2) float, mm
         Canonical points on cheeks and nose that are seen.
     """
-    known = core[plane.trust(core) > 0.5]
+    known = core[plane.confidence_at(core) > 0.5]
     if not len(known):
         return np.ones(plane.confidence.shape, np.float32)
     centre, covariance = _common(_features(plane.sample(known)[0]))

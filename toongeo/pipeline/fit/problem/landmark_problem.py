@@ -38,7 +38,7 @@ __all__ = ["LandmarkProblem"]
 _PITCH_WEIGHT = 4e-6  # of the prior on the pitch, which grows as w_r does
 _GROWTH = 4.0  # a loose first pass bends the face to most of what is odd: the misfit it leaves is a small part
 _ROUGH = 2.0  # times the expected misfit: what a single landmark may miss by without being odd at all
-_DISTRUST = 0.1  # a point with less robust weight is called an outlier
+_IGNORED = 0.1  # a point with less robust weight is called an outlier
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,15 +78,15 @@ class LandmarkProblem:
         A few points that lie far off beside the others are no face outside the model: they lose their weight, in
         the misfit and in the next pass.
         """
-        x, placement = self.search.start, self.placement(self.search.start)
+        x, state = self.search.start, self.first_state(self.search.start)
         passes = evaluations = 0
         while passes < self.options.solver.max_passes:
-            loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
+            loss = self.loss(state.vertices, state.prior_weight, state.robust_weight)
             decoupled = decoupled_pose(loss, x)
             minimum = nlopt_minimize(
                 decoupled,
                 x,
-                bounds=(self.search.bounds[0], placement.upper),
+                bounds=(self.search.bounds[0], state.upper),
                 scale=1 / np.sqrt(decoupled.curvature),
                 algorithm=algorithm,
                 tolerance=self.options.solver.tolerance,
@@ -95,39 +95,39 @@ class LandmarkProblem:
             )
             x = decoupled.x(minimum.x)
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
-            before, placement = placement, self.renewed(placement, x, first=passes == 1)
-            if self.settled(before, placement):
+            before, state = state, self.renewed(state, x, first=passes == 1)
+            if self.settled(before, state):
                 break
-        return self.solution(np.minimum(x, placement.upper), before, minimum.status, passes, evaluations)
+        return self.solution(np.minimum(x, state.upper), before, minimum.status, passes, evaluations)
 
-    def placement(self, x: Floats) -> PassState:
+    def first_state(self, x: Floats) -> PassState:
         """What the first pass holds fixed."""
-        return PassState(self.visible(x), self.target.trust, self.options.prior_weight, self.search.bounds[1])
+        return PassState(self.visible(x), self.target.robust_weight, self.options.prior_weight, self.search.bounds[1])
 
-    def renewed(self, placement: PassState, x: Floats, *, first: bool) -> PassState:
+    def renewed(self, state: PassState, x: Floats, *, first: bool) -> PassState:
         """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
-        loss = self.loss(placement.vertices, placement.prior_weight)
+        loss = self.loss(state.vertices, state.prior_weight)
         errors = loss.landmark.residuals(x)
-        trust = self._trusted(errors)
-        prior_weight = placement.prior_weight
+        robust_weight = self._robust_weight(errors)
+        prior_weight = state.prior_weight
         if first:
-            squares = trust * np.einsum("ki,kij,kj->k", errors, self.target.weights, errors)
+            squares = robust_weight * np.einsum("ki,kij,kj->k", errors, self.target.weights, errors)
             misfit = float(squares.sum()) / self.target.count
             expected = 2 * self.options.prior.landmark_deviation**2
             prior_weight *= 1 + _GROWTH * max(0.0, misfit / expected - 1)
-        upper = exclusive_bounds(placement.upper, x, self.search.opposites)
-        return PassState(self.visible(x), trust, prior_weight, upper)
+        upper = exclusive_bounds(state.upper, x, self.search.opposites)
+        return PassState(self.visible(x), robust_weight, prior_weight, upper)
 
     def settled(self, before: PassState, after: PassState) -> bool:
         """Whether another pass would find the same."""
         stayed = self.target.own is not None or np.array_equal(before.vertices, after.vertices)
-        believed = np.abs(after.trust - before.trust).max() <= SETTLED
+        believed = np.abs(after.robust_weight - before.robust_weight).max() <= SETTLED
         same = before.prior_weight == after.prior_weight and np.array_equal(before.upper, after.upper)
         return bool(stayed and believed and same)
 
-    def solution(self, x: Floats, placement: PassState, status: str, passes: int, evaluations: int) -> Solution:
-        """The face at ``x``, where a pass with this placement ended."""
-        loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
+    def solution(self, x: Floats, state: PassState, status: str, passes: int, evaluations: int) -> Solution:
+        """The face at ``x``, where a pass with this state ended."""
+        loss = self.loss(state.vertices, state.prior_weight, state.robust_weight)
         return Solution(
             coefficients=x[self.unknowns.shape],
             camera=self.frame.camera(x, self.unknowns, self.principal_point),
@@ -139,7 +139,7 @@ class LandmarkProblem:
             status=status,
             passes=passes,
             evaluations=evaluations,
-            outliers=tuple(int(k) for k in self.target.seen[placement.trust < _DISTRUST]),
+            outliers=tuple(int(k) for k in self.target.seen[state.robust_weight < _IGNORED]),
         )
 
     def error(self, solution: Solution, pixels: Floats) -> tuple[float, float]:
@@ -153,7 +153,9 @@ class LandmarkProblem:
         rms = np.sqrt(((own - pixels[self.target.seen]) ** 2).sum(axis=1).mean())
         return float(rms), float(np.linalg.norm(left - right))
 
-    def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float, trust: Floats | None = None) -> TotalLoss:
+    def loss(
+        self, landmark_vertices: NDArray[np.int64], prior_weight: float, robust_weight: Floats | None = None
+    ) -> TotalLoss:
         """Eq. 3 with the landmarks (68,) at these vertices, this ``w_r``, and robust weights (k,)."""
         mean, modes = self.basis.at(landmark_vertices[self.target.seen]) if self.target.own is None else self.target.own
         if self.target.own is None:
@@ -164,7 +166,7 @@ class LandmarkProblem:
         landmark = LandmarkLoss(
             unknowns=self.unknowns,
             points=self.target.points,
-            weights=weights if trust is None else trust[:, None, None] * weights,
+            weights=weights if robust_weight is None else robust_weight[:, None, None] * weights,
             count=self.target.count,
             mean=mean,
             modes=modes,
@@ -175,7 +177,7 @@ class LandmarkProblem:
         pitch_weight = prior_weight / self.options.prior_weight * _PITCH_WEIGHT
         return TotalLoss(landmark, self.prior, nod, self.options.landmark_weight, prior_weight, pitch_weight)
 
-    def _trusted(self, residuals: Floats) -> Floats:
+    def _robust_weight(self, residuals: Floats) -> Floats:
         """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
         W = self.target.weights  # its larger eigenvalue is the weight across an outline, or in all directions
         half = (W[:, 0, 0] - W[:, 1, 1]) / 2

@@ -31,7 +31,7 @@ class LandmarkTarget:
     own : mean (k, 3) and modes (3 k, c), or None
         Landmarks of the caller's own table, which do not slide.
     neighbours : (k, k) bool
-    trust : (k,) float
+    robust_weight : (k,) float
         Robust weights with which the first pass begins.
     """
 
@@ -42,7 +42,7 @@ class LandmarkTarget:
     offsets: Floats
     own: tuple[Floats, Floats] | None
     neighbours: NDArray[np.bool_]
-    trust: Floats
+    robust_weight: Floats
 
     @property
     def count(self) -> int:

@@ -21,7 +21,7 @@ from toongeo.pipeline.fit.losses.prior_loss import PriorLoss
 from toongeo.pipeline.fit.problem.initial_guess import (
     held_bounds,
     likeliest,
-    posing_trust,
+    posing_weight,
     principal_point_of,
     start_vector,
 )
@@ -65,7 +65,7 @@ def starting_problem(
     mean, modes = basis.at(basis.landmarks) if own is None else own
     face = mean + (modes @ expected[unknowns.shape]).reshape(-1, 3)
     face = face + offsets if own is None else face
-    frame, trust = _first_pose(face, pixels, seen, options, guess, table)
+    frame, robust_weight = _first_pose(face, pixels, seen, options, guess, table)
     principal_point = principal_point_of(options, image_centre, frame)
     bounds = _bounds(model, unknowns, expected, options.prior.max_deviation)
     if unknowns.perspective:
@@ -94,7 +94,7 @@ def starting_problem(
             offsets=offsets,
             own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
             neighbours=_neighbours(seen, table),
-            trust=trust[seen],
+            robust_weight=robust_weight[seen],
         ),
         search=SearchBox(
             start=start,
@@ -120,15 +120,15 @@ def _first_pose(
     """
     inner = np.intersect1d(seen, INNER)
     posing = inner if table is None and len(inner) >= _FEWEST else seen
-    trust = np.ones(len(pixels))
-    trust[posing] = posing_trust(face[posing], pixels[posing], options)
-    frame = canonical_frame(face[posing], pixels[posing], trust[posing])
+    robust_weight = np.ones(len(pixels))
+    robust_weight[posing] = posing_weight(face[posing], pixels[posing], options)
+    frame = canonical_frame(face[posing], pixels[posing], robust_weight[posing])
     if guess.pose is None:
-        return frame, trust
+        return frame, robust_weight
     posed = canonical_frame(face[posing], guess.pose.project(face[posing]))
     if not options.refine:
-        return posed, trust
-    return replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0), trust
+        return posed, robust_weight
+    return replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0), robust_weight
 
 
 def _row_blocks(modes: Floats, points: NDArray[np.int64]) -> Floats:

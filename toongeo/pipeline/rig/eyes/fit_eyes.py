@@ -46,8 +46,8 @@ class Eyes:
         the eyeball only so far that the iris does not leave it.
     pose : (8,) float64
         Weights of ``GAZE_NAMES`` with which the eyes look as in the picture.
-    report : dict
-        ``seconds``.
+    seconds : float
+        That finding them took.
     """
 
     centres: np.ndarray
@@ -55,7 +55,7 @@ class Eyes:
     templates: tuple[EyeballTemplate, ...]
     turn: np.ndarray
     pose: np.ndarray
-    report: dict[str, float]
+    seconds: float
 
     def __post_init__(self) -> None:
         read_only(self, "centres", "radii", "turn", "pose")
@@ -104,8 +104,7 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
         skin[edges] = False
         centres[side], radii[side] = _sphere(rig.neutral[edges], rig.neutral[skin], axes)
         turn[side] = _turn(rig.neutral[upper], rig.neutral[lower], radii[side])
-    report = {"seconds": time.perf_counter() - started}
-    return Eyes(centres, radii, face.model.eyes, turn, np.zeros(len(GAZE_NAMES)), report)
+    return Eyes(centres, radii, face.model.eyes, turn, np.zeros(len(GAZE_NAMES)), time.perf_counter() - started)
 
 
 def _edges(model: MorphableModel, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

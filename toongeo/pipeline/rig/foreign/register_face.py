@@ -14,7 +14,7 @@ from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import opening_rim
 from toongeo.model.ibug68 import INNER
-from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.align_face import AlignedFace, AlignReport
 from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.straighten_teeth import PARTS, straighten_teeth
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
@@ -114,7 +114,7 @@ def register_face(V: np.ndarray, F: np.ndarray, points: np.ndarray, model: Morph
         model=model,
         report=FitReport("none", "the mean face", 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (), 0.0),
     )
-    face = AlignedFace(vertices, camera, model.landmarks, model, fit, {})
+    face = AlignedFace(vertices, camera, model.landmarks, model, fit, AlignReport())
     return RegisteredFace(face, registration, scale, rotation, shift)
 
 

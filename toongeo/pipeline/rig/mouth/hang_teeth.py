@@ -3,7 +3,6 @@
 Constants were judged on the seven examples and 15 caricatures (``benchmarks/lips.py``).
 """
 
-import dataclasses
 import time
 from functools import lru_cache
 
@@ -55,8 +54,7 @@ def hang_teeth(face: AlignedFace, rig: Rig) -> Rig:
     neutral, deltas = rig.neutral.copy(), rig.deltas.copy()
     _follow_chin(face.model, rig.names, deltas)
     _keep_inside(face.model, rig.names, neutral, deltas)
-    report = rig.report | {"seconds": rig.report["seconds"] + time.perf_counter() - started}
-    return dataclasses.replace(rig, neutral=neutral, deltas=deltas, report=report)
+    return rig.changed(started, neutral=neutral, deltas=deltas)
 
 
 def _follow_chin(model: MorphableModel, names: tuple[str, ...], deltas: np.ndarray) -> None:

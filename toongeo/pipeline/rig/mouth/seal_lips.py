@@ -60,15 +60,15 @@ def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
     moves[sealed] = False
     for k in np.flatnonzero(moves):
         deltas[k, line.follows] += line.spread @ _parting(line, neutral + deltas[k], up, at_rest)
-    report = dict(rig.report)
+    report = rig.report
     for seal in sealed:
         pucker, jaw_too = rig.names[seal] == "mouthPucker", "jawOpen" in rig.names
         opened = neutral + (deltas[rig.names.index("jawOpen")] if jaw_too and not pucker else 0.0)
         deltas[seal, line.follows] += line.spread @ _sealing(line, opened + deltas[seal], up)
         if jaw_too and not pucker:
-            report["lips_closure"] = 100 * (1 - _gap(line, opened + deltas[seal]) / _gap(line, opened))
-    report["seconds"] += time.perf_counter() - started
-    return dataclasses.replace(rig, neutral=neutral, deltas=deltas, report=report)
+            closure = 100 * (1 - _gap(line, opened + deltas[seal]) / _gap(line, opened))
+            report = dataclasses.replace(report, lips_closure=closure)
+    return dataclasses.replace(rig, report=report).changed(started, neutral=neutral, deltas=deltas)
 
 
 def _sealing(line: LipLine, V: np.ndarray, up: np.ndarray) -> np.ndarray:
