@@ -56,6 +56,7 @@ from toongeo.pipeline import build_rig as build_rig
 from toongeo.pipeline import clear_lids as clear_lids
 from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
+from toongeo.pipeline import find_hair as find_hair
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
 from toongeo.pipeline import fit_lids as fit_lids
@@ -73,6 +74,8 @@ from toongeo.protocols import Coefficients as Coefficients
 from toongeo.protocols import ExpressionDriver as ExpressionDriver
 from toongeo.protocols import FaceLabel as FaceLabel
 from toongeo.protocols import FaceParse as FaceParse
+from toongeo.protocols import HairFinder as HairFinder
+from toongeo.protocols import HairMask as HairMask
 from toongeo.protocols import LandmarkMapper as LandmarkMapper
 from toongeo.protocols import TextureGenerator as TextureGenerator
 from toongeo.protocols import TextureGeometry as TextureGeometry

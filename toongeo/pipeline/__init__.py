@@ -11,6 +11,7 @@ from toongeo.pipeline.fit.rendered_picture import rendered_picture
 from toongeo.pipeline.fit.residual_map import residual_map
 from toongeo.pipeline.fit.ridge_regressor import RidgeRegressor, train_ridge_regressor
 from toongeo.pipeline.parse.classical_parser import ClassicalParser
+from toongeo.pipeline.parse.find_hair import find_hair
 from toongeo.pipeline.parse.parse_face import parse_face
 from toongeo.pipeline.parse.snap_eyes import snap_eyes
 from toongeo.pipeline.rig.animator import Animator
@@ -43,6 +44,7 @@ __all__ = [
     "Iris",
     "adjust_coefficients",
     "aim_eyes",
+    "find_hair",
     "find_irises",
     "align_face",
     "bake_eyes",
