@@ -1,0 +1,75 @@
+"""The atlas of a shell: the picture where it shows hair, strands elsewhere."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+
+from toongeo.pipeline.hair.colours.panels import Panel, Texels, panels, texels
+from toongeo.pipeline.hair.colours.picture_colours import PictureColours
+from toongeo.pipeline.hair.colours.strand_frame import StrandFrame
+from toongeo.pipeline.hair.plane.masks import nearest_set
+from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
+from toongeo.pipeline.hair.shell.shell_mesh import ShellMesh
+
+__all__ = ["hair_texture"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+_TURNED = (0.3, 0.6)  # cosines to the viewer between which the picture takes over from strands
+
+
+def hair_texture(
+    plane: WorkingPlane, mesh: ShellMesh, colours: PictureColours, frame: StrandFrame, strands: NDArray[np.float32]
+) -> tuple[NDArray[np.uint8], Floats, Ints]:
+    """Atlas (H, W, 3) uint8, coordinates (t, 2) and corners (m, 3) into them.
+
+    ``strands`` (along, across, 3) is what strands add to the colours, a row a mm along them, periodic across.
+    """
+    density = 1.0 / colours.cell_mm
+    found = panels(mesh, density, min(density, 1.25))
+    pictures, corners = [], np.zeros_like(mesh.faces)
+    places = []
+    count = left = 0
+    for panel in found:
+        inside = texels(panel, mesh)
+        painted = np.zeros((panel.shape[0] * panel.shape[1], 3), np.float32)
+        painted[inside.number] = _colours(plane, mesh, inside, colours, frame, strands)
+        covered = np.zeros(len(painted), bool)
+        covered[inside.number] = True
+        pictures.append(nearest_set(painted.reshape(*panel.shape, 3), covered.reshape(panel.shape)))
+        used, local = np.unique(mesh.faces[panel.rows], return_inverse=True)
+        corners[panel.rows] = local.reshape(-1, 3) + count
+        places.append(panel.places(mesh.vertices[used]) + [left, 0])
+        count += len(used)
+        left += panel.shape[1]
+    height = max(panel.shape[0] for panel in found)
+    atlas = np.hstack([np.pad(p, ((0, height - len(p)), (0, 0), (0, 0)), mode="edge") for p in pictures])
+    uv = (np.vstack(places) + 0.5) / [left, height]
+    return np.clip(np.rint(atlas[::-1]), 0, 255).astype(np.uint8), uv, corners
+
+
+def _colours(
+    plane: WorkingPlane,
+    mesh: ShellMesh,
+    inside: Texels,
+    colours: PictureColours,
+    frame: StrandFrame,
+    strands: NDArray[np.float32],
+) -> NDArray[np.float32]:
+    """Colours (k, 3) of texels."""
+    at = ((inside.points[:, :2] - plane.low) / colours.cell_mm).T[::-1]
+    drawn, broad = (_sampled(layer, at) for layer in (colours.drawn, colours.broad))
+    across, along = frame.at(plane.back(inside.points))
+    period = strands.shape[1]
+    turns = 2 * np.pi * frame.radius
+    detail = _sampled(strands, np.array([along, np.mod(across / turns, 1.0) * period]), wrap=True)
+    seen = (mesh.front & mesh.shown)[inside.triangle] | ~mesh.shown[inside.triangle]
+    share = np.clip((inside.normals[:, 2] - _TURNED[0]) / (_TURNED[1] - _TURNED[0]), 0, 1)
+    share = (share * share * (3 - 2 * share) * seen).astype(np.float32)[:, None]
+    return np.asarray(share * drawn + (1 - share) * (broad + detail), np.float32)
+
+
+def _sampled(layer: NDArray[np.float32], at: Floats, *, wrap: bool = False) -> NDArray[np.float32]:
+    mode = "grid-wrap" if wrap else "nearest"
+    channels = [map_coordinates(layer[..., k], at, order=1, mode=mode) for k in range(layer.shape[2])]
+    return np.stack(channels, axis=1)
