@@ -22,10 +22,10 @@ import igl
 import numpy as np
 
 from toongeo import LaplacianAligner, align_face, default_model, fit_3dmm, laplacian_align, read_landmarks
+from toongeo.geometry.rotations.similarity import similarity
 from toongeo.metrics import mesh_quality
+from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.model.ibug68 import OUTER_EYES
-from toongeo.pipeline.align.similarity import similarity
-from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.render import ScaledOrthographicCamera
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"

@@ -22,8 +22,8 @@ from scipy.optimize import least_squares
 from toongeo import align_face, default_model, fit_3dmm, read_landmarks
 from toongeo.app.bench.bench_folder import bench_folder
 from toongeo.caricature import CaricatureOptions, DeformationSpace, face_space, fit_caricature
-from toongeo.caricature.face_space import _face_space
-from toongeo.caricature.fit_weights import WeightProblem
+from toongeo.caricature.space.face_space import _face_space
+from toongeo.caricature.space.fit_weights import WeightProblem
 
 SMALL = 10  # shapes of the rival's case: with all of them its Jacobian takes gigabytes
 

@@ -21,20 +21,20 @@ from scipy.interpolate import RBFInterpolator
 from toongeo import ScaledOrthographicCamera, align_face, default_model, fit_3dmm, read_landmarks, render_mesh
 from toongeo.caricature import PartMapper, caricature_rig, face_space, fit_caricature, initial_blendshapes
 from toongeo.caricature import optimize_blendshapes as optimize
-from toongeo.caricature.initial_blendshapes import InitialBlendshapes
-from toongeo.caricature.optimize_blendshapes import (
+from toongeo.caricature.blendshapes.initial_blendshapes import InitialBlendshapes
+from toongeo.caricature.blendshapes.optimize_blendshapes import (
     BlendshapeWeights,
     displacement_masks,
     expression_similarities,
     signed_graph,
     squared_laplacian,
 )
-from toongeo.caricature.sparse_expression import sparse_expression
-from toongeo.geometry._factor import factor_spd, solve
+from toongeo.caricature.blendshapes.sparse_expression import sparse_expression
+from toongeo.geometry.operators.factor import factor_spd, solve
 from toongeo.io import write_image
+from toongeo.model.anatomy.landmark_basis import landmark_basis
+from toongeo.model.anatomy.visible_landmarks import landmarks_seen
 from toongeo.pipeline import build_rig
-from toongeo.pipeline.fit.contour import landmarks_seen
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
 from toongeo.render import Surface
 
 model, space = default_model(), face_space()

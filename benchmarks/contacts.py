@@ -25,12 +25,11 @@ import numpy as np
 
 from toongeo import align_face, build_rig, fit_3dmm, fit_lids, fit_mouth, neutral_face, read_image, read_landmarks
 from toongeo.metrics import mesh_quality
+from toongeo.model.anatomy.gaze import GAZE_NAMES
+from toongeo.model.anatomy.parts import SIDES
+from toongeo.model.anatomy.rims import opening_rim, rim_path
 from toongeo.pipeline import AlignedFace, Eyes, Rig
-from toongeo.pipeline.align.carry_inner_parts import opening_rim
-from toongeo.pipeline.align.rim_anchors import rim_path
-from toongeo.pipeline.rig.fit_eyes import SIDES
-from toongeo.pipeline.rig.gaze import GAZE_NAMES
-from toongeo.pipeline.rig.visible_eyeballs import visible_eyeballs
+from toongeo.pipeline.rig.eyes.visible_eyeballs import visible_eyeballs
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}

@@ -30,8 +30,8 @@ from toongeo import (
     read_image,
     read_landmarks,
 )
-from toongeo.caricature._atlas_raster import AtlasRaster
-from toongeo.caricature._openings import lips_parted
+from toongeo.editing.texture.atlas_raster import AtlasRaster
+from toongeo.editing.texture.openings import lips_parted
 from toongeo.geometry import vertex_normals
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_lids
 from toongeo.render import ScaledOrthographicCamera, irradiance, linear_to_srgb, srgb_to_linear, studio_light

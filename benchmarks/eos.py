@@ -31,7 +31,7 @@ import cv2
 import numpy as np
 
 from toongeo import read_image, read_landmarks
-from toongeo.model.load_eos import load_eos
+from toongeo.model.loaders.load_eos import load_eos
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 from toongeo import align_face, fit_3dmm, read_image, read_landmarks
-from toongeo.avatar_report import landmark_errors
+from toongeo.avatar.report import landmark_errors
 from toongeo.metrics import mesh_quality
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"

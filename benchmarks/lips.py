@@ -28,9 +28,9 @@ from scipy.spatial import cKDTree
 from toongeo.io import read_landmarks
 from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
+from toongeo.model.anatomy.lip_line import lip_line
 from toongeo.pipeline import AlignedFace, Rig, align_face, build_rig, fit_3dmm, fit_mouth, neutral_face
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
-from toongeo.pipeline.rig.lip_line import lip_line
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 MOUTH = ("mouth", "jaw", "cheekPuff", "nose", "tongue")

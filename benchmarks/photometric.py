@@ -19,8 +19,8 @@ import numpy as np
 
 from toongeo import ScaledOrthographicCamera, default_model, fit_3dmm, photometric_fit, read_image, read_landmarks
 from toongeo.geometry import vertex_normals
-from toongeo.pipeline.fit.contour import visible_landmarks
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
+from toongeo.model.anatomy.landmark_basis import landmark_basis
+from toongeo.model.anatomy.visible_landmarks import visible_landmarks
 from toongeo.render import Surface, interpolate, irradiance, rasterize, render_mesh, sh_basis, srgb_to_linear
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"

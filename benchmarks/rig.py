@@ -36,11 +36,11 @@ from toongeo import (
     read_image,
     read_landmarks,
 )
-from toongeo.geometry._source_motion import source_motion
+from toongeo.geometry.source_motion import source_motion
 from toongeo.model import MorphableModel, load_ict_facekit
+from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.build_rig import AT_ONCE
 from toongeo.pipeline.rig.fit_pose import fit_pose
-from toongeo.pipeline.rig.gaze import GAZE_NAMES
 
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 MOVES_MM = 0.05

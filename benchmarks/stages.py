@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 
 from toongeo import default_model, make_avatar, read_image, read_landmarks
-from toongeo.make_avatar import STAGES
+from toongeo.avatar.make_avatar import STAGES
 
 RUNS = 5
 PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"

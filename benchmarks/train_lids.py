@@ -22,9 +22,9 @@ from scipy.optimize import minimize
 from snapping import EYES, disturbed, lid_distance, outer_eyes, pictures
 
 from toongeo import read_image, read_landmarks
-from toongeo.pipeline.parse.lid_candidates import lid_candidates, lid_contour
-from toongeo.pipeline.parse.lid_features import lid_features
-from toongeo.pipeline.parse.lid_patch import eye_points, lid_patch
+from toongeo.pipeline.parse.lids.lid_candidates import lid_candidates, lid_contour
+from toongeo.pipeline.parse.lids.lid_features import lid_features
+from toongeo.pipeline.parse.lids.lid_patch import eye_points, lid_patch
 
 OUT = Path(__file__).parents[1] / "toongeo" / "pipeline" / "parse" / "lid_weights.csv"
 SEEDS = 3

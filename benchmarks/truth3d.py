@@ -20,8 +20,8 @@ import numpy as np
 
 from toongeo.model import default_model
 from toongeo.model.ibug68 import INNER
-from toongeo.model.load_eos import load_eos
-from toongeo.model.load_ict_facekit import load_ict_facekit
+from toongeo.model.loaders.load_eos import load_eos
+from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 
 OUTLIERS, OUTLIER_PX = 5, 60.0

@@ -1,17 +1,16 @@
-"""The public names, for type checkers; ``__init__.py`` imports each when it is first used."""
+"""The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
 from toongeo.avatar import Avatar as Avatar
+from toongeo.avatar import load_avatar as load_avatar
+from toongeo.avatar import make_avatar as make_avatar
 from toongeo.caricature import BlendshapeWeights as BlendshapeWeights
 from toongeo.caricature import CaricatureFit as CaricatureFit
 from toongeo.caricature import CaricatureOptions as CaricatureOptions
-from toongeo.caricature import ClassicalTextureGenerator as ClassicalTextureGenerator
 from toongeo.caricature import DeformationSpace as DeformationSpace
 from toongeo.caricature import FaceSpace as FaceSpace
 from toongeo.caricature import PartMapper as PartMapper
-from toongeo.caricature import attention_map as attention_map
 from toongeo.caricature import caricature_rig as caricature_rig
 from toongeo.caricature import caricature_surface as caricature_surface
-from toongeo.caricature import compose_texture as compose_texture
 from toongeo.caricature import exaggerate as exaggerate
 from toongeo.caricature import face_space as face_space
 from toongeo.caricature import fit_caricature as fit_caricature
@@ -22,8 +21,11 @@ from toongeo.driving import ArkitDriver as ArkitDriver
 from toongeo.driving import LandmarkDriver as LandmarkDriver
 from toongeo.driving import Take as Take
 from toongeo.driving import send_weights as send_weights
-from toongeo.edit_expression import edit_expression as edit_expression
-from toongeo.expression_editor import ExpressionEditor as ExpressionEditor
+from toongeo.editing import ClassicalTextureGenerator as ClassicalTextureGenerator
+from toongeo.editing import ExpressionEditor as ExpressionEditor
+from toongeo.editing import attention_map as attention_map
+from toongeo.editing import compose_texture as compose_texture
+from toongeo.editing import edit_expression as edit_expression
 from toongeo.geometry import DeformationTransfer as DeformationTransfer
 from toongeo.geometry import LaplacianAligner as LaplacianAligner
 from toongeo.geometry import RegisteredMesh as RegisteredMesh
@@ -33,8 +35,6 @@ from toongeo.geometry import nonrigid_register as nonrigid_register
 from toongeo.io import read_image as read_image
 from toongeo.io import read_landmarks as read_landmarks
 from toongeo.io import write_landmarks as write_landmarks
-from toongeo.load_avatar import load_avatar as load_avatar
-from toongeo.make_avatar import make_avatar as make_avatar
 from toongeo.model import MorphableModel as MorphableModel
 from toongeo.model import default_model as default_model
 from toongeo.model import expression_weights as expression_weights
@@ -53,7 +53,6 @@ from toongeo.pipeline import align_face as align_face
 from toongeo.pipeline import bake_eyes as bake_eyes
 from toongeo.pipeline import bake_texture as bake_texture
 from toongeo.pipeline import build_rig as build_rig
-from toongeo.pipeline import clear_lids as clear_lids
 from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import find_hair as find_hair
@@ -61,6 +60,7 @@ from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_eyes as fit_eyes
 from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.pipeline import fit_mouth as fit_mouth
+from toongeo.pipeline import keep_lids_outside as keep_lids_outside
 from toongeo.pipeline import neutral_face as neutral_face
 from toongeo.pipeline import parse_face as parse_face
 from toongeo.pipeline import photometric_fit as photometric_fit
@@ -84,4 +84,3 @@ from toongeo.render import ScaledOrthographicCamera as ScaledOrthographicCamera
 from toongeo.render import render_mesh as render_mesh
 
 __version__: str
-__all__: list[str]

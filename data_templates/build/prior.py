@@ -23,13 +23,13 @@ from scipy.spatial.transform import Rotation
 from threadpoolctl import threadpool_limits
 
 from toongeo.geometry import vertex_normals
+from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.landmark_basis import landmark_basis
+from toongeo.model.anatomy.visible_landmarks import visible_landmarks
 from toongeo.model.artist_model import artist_model
 from toongeo.model.ibug68 import INNER, MIRROR, PARTS
-from toongeo.model.load_ict_facekit import load_ict_facekit
-from toongeo.pipeline.align.similarity import similarity
-from toongeo.pipeline.fit.contour import visible_landmarks
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
+from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
 
 Floats = NDArray[np.float64]
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from toongeo import MorphableModel, Rig, ScaledOrthographicCamera, render_mesh, rig_mesh
 from toongeo.io import write_image
-from toongeo.model.load_ict_facekit import load_ict_facekit
+from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
 from toongeo.render import Surface
 
 HERE = Path(__file__).parent

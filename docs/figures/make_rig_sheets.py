@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from toongeo import build_rig, fit_lids, make_avatar, read_image, read_landmarks
-from toongeo.avatar import Avatar
+from toongeo.avatar.avatar import Avatar
 from toongeo.io import write_image
 from toongeo.render import ScaledOrthographicCamera
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from toongeo.caricature.deformation_space import DeformationSpace
-from toongeo.caricature.face_space import face_space as build
+from toongeo.caricature.space.deformation_space import DeformationSpace
+from toongeo.caricature.space.face_space import face_space as build
 
 
 @pytest.fixture(scope="session")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toongeo.caricature.exaggerate import exaggerate
-from toongeo.caricature.face_space import FaceSpace
+from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.pipeline import fit_3dmm
 from toongeo.render import ScaledOrthographicCamera
 

@@ -5,12 +5,12 @@ import pytest
 
 from toongeo.caricature.align_caricature import align_caricature
 from toongeo.caricature.caricature_options import CaricatureOptions
-from toongeo.caricature.face_space import EXPRESSIONS, IDENTITIES, FaceSpace
 from toongeo.caricature.fit_caricature import fit_caricature
 from toongeo.caricature.inner_parts import tucked
 from toongeo.caricature.landmark_mesh import LandmarkMesh
 from toongeo.caricature.level_camera import MOST_PITCH, level_camera
 from toongeo.caricature.smooth_warp import smooth_warp, spread_rows
+from toongeo.caricature.space.face_space import EXPRESSIONS, IDENTITIES, FaceSpace
 from toongeo.geometry import self_intersections
 from toongeo.metrics import mesh_quality
 from toongeo.pipeline import align_face, fit_3dmm

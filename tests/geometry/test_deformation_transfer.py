@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from toongeo.geometry._source_motion import source_motion
 from toongeo.geometry.deformation_transfer import DeformationTransfer, deformation_transfer
+from toongeo.geometry.source_motion import source_motion
 
 
 @pytest.fixture

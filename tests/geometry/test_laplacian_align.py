@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from toongeo.geometry.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.laplacian_align import laplacian_align
 from toongeo.geometry.laplacian_aligner import LaplacianAligner
-from toongeo.geometry.uniform_laplacian import uniform_laplacian
+from toongeo.geometry.operators.cotangent_laplacian import cotangent_laplacian
+from toongeo.geometry.operators.uniform_laplacian import uniform_laplacian
 
 ANCHORS = np.array([3, 40, 77, 120, 200, 301])
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toongeo.geometry import nonrigid_register, vertex_normals
-from toongeo.geometry._facing_surface import FacingSurface, barycentric
+from toongeo.geometry.facing_surface import FacingSurface, barycentric
 
 LANDMARKS = np.array([0, 20, 57, 130, 200, 301, 377])
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toongeo.geometry._box_pairs import box_pairs
+from toongeo.geometry.mesh_checks.box_pairs import box_pairs
 from toongeo.geometry.self_intersections import self_intersections
 
 BASE = [[0.0, 0, 0], [4, 0, 0], [0, 4, 0]]
@@ -119,7 +119,7 @@ def test_ignores_a_rigid_motion_and_scale(bumpy, rotation):
 
 @pytest.mark.parametrize("m", [1, 2, 3, 37, 256, 1500])
 def test_box_pairs_are_all_overlaps(m, monkeypatch):
-    monkeypatch.setattr("toongeo.geometry._box_pairs._CHUNK", 1000)
+    monkeypatch.setattr("toongeo.geometry.mesh_checks.box_pairs._CHUNK", 1000)
     rng = np.random.default_rng(m)
     low = rng.random((3, m))
     high = low + rng.random((3, m)) * rng.choice([0.0, 0.05, 0.6], (1, m))

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from toongeo.model import data_path, expression_weights, preset
+from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.expression_schemes import EXPRESSIONS, GAZE, PRESETS, SCHEMES
-from toongeo.pipeline.rig.gaze import GAZE_NAMES
 
 
 def rows(table):

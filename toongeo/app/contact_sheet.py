@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from toongeo.avatar import Avatar
+from toongeo.avatar.avatar import Avatar
 
 EXPRESSIONS = (
     (

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from toongeo.app.read_take import read_landmark_take, read_take
 from toongeo.app.write_video import write_video
-from toongeo.load_avatar import load_avatar
+from toongeo.avatar.load_avatar import load_avatar
 
 __all__ = ["drive"]
 

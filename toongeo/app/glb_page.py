@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from toongeo.avatar.save_avatar import page_presets
 from toongeo.io import GlbDocument, page_html, read_glb
-from toongeo.save_avatar import page_presets
 
 __all__ = ["glb_page", "read_avatar_glb", "target_names"]
 

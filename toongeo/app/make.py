@@ -6,11 +6,11 @@ from typing import Any
 
 from tqdm import tqdm
 
-from toongeo.avatar import Avatar
-from toongeo.crop_faces import Crop
+from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.crop_faces import Crop
+from toongeo.avatar.make_avatar import STAGES, make_avatar
+from toongeo.avatar.save_avatar import writer_for
 from toongeo.io import read_image, read_landmarks
-from toongeo.make_avatar import STAGES, make_avatar
-from toongeo.save_avatar import writer_for
 
 
 def make(

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from toongeo.io import Scene, SceneMesh, read_image, read_mesh_landmarks, read_obj, write_glb
-from toongeo.io._glb_scene import METRES
+from toongeo.io.scene import METRES
 from toongeo.pipeline import Rig, rig_mesh
 
 TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored

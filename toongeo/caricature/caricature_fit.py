@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
-from toongeo.caricature.face_space import FaceSpace
+from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.geometry import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.face_fit import FaceFit

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry import validate_mesh, vertex_components
-from toongeo.geometry._factor import factor_spd, solve
+from toongeo.geometry.operators.factor import factor_spd, solve
 
 __all__ = ["caricature_surface"]
 

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.caricature.caricature_fit import CaricatureFit, CaricatureReport
-from toongeo.caricature.face_space import FaceSpace, face_space
 from toongeo.caricature.inner_parts import with_inner_parts
-from toongeo.pipeline.align.similarity import similarity
+from toongeo.caricature.space.face_space import FaceSpace, face_space
+from toongeo.geometry.rotations.similarity import similarity
 from toongeo.pipeline.fit.face_fit import FaceFit
 
 __all__ = ["exaggerate"]

@@ -11,22 +11,22 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo.caricature.caricature_fit import CaricatureFit, CaricatureReport
 from toongeo.caricature.caricature_options import CaricatureOptions
-from toongeo.caricature.face_space import FaceSpace, face_space
 from toongeo.caricature.inner_parts import with_inner_parts
 from toongeo.caricature.landmark_mesh import LandmarkMesh
 from toongeo.caricature.level_camera import level_camera
 from toongeo.caricature.smooth_warp import smooth_warp
+from toongeo.caricature.space.face_space import FaceSpace, face_space
+from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
+from toongeo.model.anatomy.landmark_basis import landmark_basis
+from toongeo.model.anatomy.visible_landmarks import landmarks_seen
 from toongeo.pipeline.align.align_face import align_face
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
-from toongeo.pipeline.fit.contour import landmarks_seen
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
-from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.protocols import HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 

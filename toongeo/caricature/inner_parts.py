@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.caricature.face_space import FaceSpace
+from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.geometry import self_intersections
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 

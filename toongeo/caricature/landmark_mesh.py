@@ -6,9 +6,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from toongeo.caricature.deformation_space import DeformationSpace
-from toongeo.geometry._factor import factor_spd, solve
+from toongeo.caricature.space.deformation_space import DeformationSpace
 from toongeo.geometry.one_thread import one_thread
+from toongeo.geometry.operators.factor import factor_spd, solve
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["LandmarkMesh"]

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RBFInterpolator
 
-from toongeo.caricature.face_space import FaceSpace
+from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.geometry.one_thread import one_thread
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
+from toongeo.model.anatomy.landmark_basis import landmark_basis
 
 __all__ = ["smooth_warp", "spread_rows"]
 

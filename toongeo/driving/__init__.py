@@ -1,10 +1,5 @@
 """Weights from a performance: landmarks of another face, or what a phone recorded."""
 
-from toongeo.driving.arkit_driver import ArkitDriver
-from toongeo.driving.landmark_driver import LandmarkDriver, LiveLandmarks
-from toongeo.driving.landmark_rig import LandmarkRig
-from toongeo.driving.read_live_link import read_live_link
-from toongeo.driving.send_weights import send_weights
-from toongeo.driving.take import Take
+from toongeo._lazy import attach
 
-__all__ = ["ArkitDriver", "LandmarkDriver", "LandmarkRig", "LiveLandmarks", "Take", "read_live_link", "send_weights"]
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.avatar.avatar import Avatar
 from toongeo.driving.landmark_frames import landmark_frames
 from toongeo.driving.landmark_pose import FEWEST, LandmarkPose, landmark_pose
 from toongeo.driving.landmark_rig import LandmarkRig
@@ -15,9 +15,6 @@ from toongeo.driving.one_euro_filter import OneEuroFilter
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.expression_schemes import EXPRESSIONS
 from toongeo.pipeline import Rig
-
-if TYPE_CHECKING:
-    from toongeo.avatar import Avatar
 
 __all__ = ["LandmarkDriver", "LiveLandmarks"]
 

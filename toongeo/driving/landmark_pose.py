@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from toongeo.driving.bounded_quadratic import bounded_quadratic
 from toongeo.driving.landmark_rig import LandmarkRig
-from toongeo.pipeline.fit.rotation import rotation_matrix
-from toongeo.pipeline.fit.scaled_orthographic_pose import scaled_orthographic_pose
+from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
+from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 
 __all__ = ["FEWEST", "LandmarkPose", "landmark_pose"]
 

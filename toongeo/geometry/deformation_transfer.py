@@ -8,11 +8,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry._components import components
-from toongeo.geometry._factor import factor_spd, solve
-from toongeo.geometry._rigid_rotation import rigid_rotation
-from toongeo.geometry._source_motion import SourceMotion, source_motion
-from toongeo.geometry._transfer_operators import transfer_operators
+from toongeo.geometry.deformation.transfer_operators import transfer_operators
+from toongeo.geometry.operators.components import components
+from toongeo.geometry.operators.factor import factor_spd, solve
+from toongeo.geometry.rotations.rigid_rotation import rigid_rotation
+from toongeo.geometry.source_motion import SourceMotion, source_motion
 from toongeo.geometry.validate_mesh import validate_mesh
 
 __all__ = ["DeformationTransfer", "deformation_transfer"]

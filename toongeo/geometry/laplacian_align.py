@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry._anchored_mesh import (
+from toongeo.geometry.deformation.anchored_mesh import (
     DEFAULT_WEIGHT,
     AnchoredMesh,
     add_anchors,
@@ -16,8 +16,8 @@ from toongeo.geometry._anchored_mesh import (
     checked_targets,
     turned_pull,
 )
-from toongeo.geometry._factor import factor_spd, solve
-from toongeo.geometry._loose_parts import follow
+from toongeo.geometry.deformation.loose_parts import follow
+from toongeo.geometry.operators.factor import factor_spd, solve
 
 __all__ = ["laplacian_align"]
 

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry._anchored_mesh import (
+from toongeo.geometry.deformation.anchored_mesh import (
     DEFAULT_WEIGHT,
     add_anchors,
     anchored_mesh,
@@ -15,9 +15,9 @@ from toongeo.geometry._anchored_mesh import (
     checked_targets,
     turned_pull,
 )
-from toongeo.geometry._factor import factor_spd, solve
-from toongeo.geometry._loose_parts import follow
+from toongeo.geometry.deformation.loose_parts import follow
 from toongeo.geometry.one_thread import one_thread
+from toongeo.geometry.operators.factor import factor_spd, solve
 from toongeo.geometry.validate_mesh import validate_vertices
 
 __all__ = ["LaplacianAligner"]

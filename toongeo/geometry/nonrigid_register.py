@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
-from toongeo.geometry._facing_surface import FACING, FacingSurface
-from toongeo.geometry._landmark_matrix import landmark_matrix
-from toongeo.geometry._thin_shell import ThinShell
-from toongeo.geometry.similarity import similarity
+from toongeo.geometry.facing_surface import FACING, FacingSurface
+from toongeo.geometry.landmark_matrix import landmark_matrix
+from toongeo.geometry.operators.vertex_normals import vertex_normals
+from toongeo.geometry.registration.thin_shell import ThinShell
+from toongeo.geometry.rotations.similarity import similarity
 from toongeo.geometry.validate_mesh import validate_mesh
-from toongeo.geometry.vertex_normals import vertex_normals
 
 __all__ = ["RegisteredMesh", "nonrigid_register"]
 

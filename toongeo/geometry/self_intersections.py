@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry._box_pairs import box_pairs
-from toongeo.geometry._triangle_pairs import triangles_intersect
+from toongeo.geometry.mesh_checks.box_pairs import box_pairs
+from toongeo.geometry.mesh_checks.triangle_pairs import triangles_intersect
 from toongeo.geometry.validate_mesh import validate_mesh
 
 __all__ = ["self_intersections"]

@@ -2,8 +2,8 @@
 
 from typing import get_args
 
-from toongeo.io._glb_builder import GlbBuilder
-from toongeo.io._glb_scene import GlbOptions, Picture, add_scene
+from toongeo.io.gltf.glb_builder import GlbBuilder
+from toongeo.io.gltf.scene_parts import GlbOptions, Picture, add_scene
 from toongeo.io.scene import Scene
 
 __all__ = ["encode_glb"]

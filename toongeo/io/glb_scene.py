@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from toongeo.io._glb_scene import METRES
-from toongeo.io.read_glb import GlbDocument
-from toongeo.io.scene import Scene, SceneAnimation, SceneMesh
+from toongeo.io.readers.read_glb import GlbDocument
+from toongeo.io.scene import METRES, Scene, SceneAnimation, SceneMesh
 
 __all__ = ["glb_scene"]
 

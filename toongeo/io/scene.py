@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Scene", "SceneAnimation", "SceneMesh"]
+__all__ = ["METRES", "Scene", "SceneAnimation", "SceneMesh"]
+
+METRES = 1e-3  # the unit of glTF and USD in ours; their axes (+Y up, a face looks along +Z) are ours already
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.colour.srgb import srgb_to_linear
 from toongeo.render.spherical_harmonics import irradiance
-from toongeo.render.srgb import srgb_to_linear
 
 __all__ = ["clay_shade"]
 

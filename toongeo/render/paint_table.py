@@ -9,13 +9,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.geometry.vertex_normals import vertex_normals
+from toongeo.colour.srgb import srgb_to_linear
+from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.protocols import Camera
 from toongeo.render.clay_shade import clay_shade
 from toongeo.render.interpolate import blend_corners
 from toongeo.render.sample_image import sample_image
 from toongeo.render.spherical_harmonics import irradiance
-from toongeo.render.srgb import srgb_to_linear
 from toongeo.render.surface import Surface
 from toongeo.render.uv_to_px import uv_to_px
 

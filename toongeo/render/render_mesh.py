@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.colour.srgb import linear_to_srgb, srgb_to_linear
 from toongeo.protocols import Camera
 from toongeo.render.paint_table import PaintTable, Shading, paint_table
 from toongeo.render.rasterize import Fragments, rasterize
-from toongeo.render.srgb import linear_to_srgb, srgb_to_linear
 from toongeo.render.studio_light import studio_light
 from toongeo.render.surface import Surface
 

@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 from tests.conftest import CARTOONS
+from toongeo.geometry.rotations.similarity import similarity
 from toongeo.io import read_image, read_landmarks
 from toongeo.metrics import mesh_quality
+from toongeo.model.anatomy.rims import rim_path
+from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.pipeline import align_face, fit_3dmm
-from toongeo.pipeline.align.rim_anchors import rim_path
-from toongeo.pipeline.align.similarity import similarity
-from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.render import ScaledOrthographicCamera
 
 DEPTHS = ("keep", "scaled")

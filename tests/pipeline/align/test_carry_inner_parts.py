@@ -1,7 +1,8 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts, opening_rim
+from toongeo.model.anatomy.rims import opening_rim
+from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 
 INNER = ("mouth_cavity", "teeth_upper", "teeth_lower", "tongue", "socket_left", "socket_right")
 

@@ -1,7 +1,7 @@
 import numpy as np
 
+from toongeo.model.anatomy.rims import rim_path
 from toongeo.pipeline.align.keep_rims_apart import GAP_MM, keep_rims_apart
-from toongeo.pipeline.align.rim_anchors import rim_path
 from toongeo.render import ScaledOrthographicCamera
 
 CAMERA = ScaledOrthographicCamera.look(size=512)

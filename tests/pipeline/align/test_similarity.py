@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from toongeo.pipeline.align.similarity import similarity
+from toongeo.geometry.rotations.similarity import similarity
 
 
 @pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])

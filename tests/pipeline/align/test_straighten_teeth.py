@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from toongeo.pipeline.align.rim_anchors import rim_path
+from toongeo.model.anatomy.rims import rim_path
 from toongeo.pipeline.align.straighten_teeth import PARTS, PARTS_OF_RIM, STRETCH, straighten_teeth
 
 

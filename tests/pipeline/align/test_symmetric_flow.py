@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from toongeo.geometry import self_intersections
+from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
-from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 
 CAMERA = ScaledOrthographicCamera.look(yaw=20, pitch=5, size=512)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from toongeo.model.anatomy.landmark_basis import landmark_basis
+from toongeo.model.anatomy.visible_landmarks import visible_landmarks
 from toongeo.model.artist_model import artist_model
-from toongeo.pipeline.fit.contour import visible_landmarks
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
 
 
 @pytest.fixture(scope="session")

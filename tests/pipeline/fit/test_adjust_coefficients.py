@@ -5,9 +5,9 @@ import pytest
 
 from toongeo.io import read_landmarks
 from toongeo.model import data_path
+from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS, DistanceLoss, adjust_coefficients
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
 from toongeo.render import ScaledOrthographicCamera
 
 

@@ -8,20 +8,20 @@ from scipy.spatial.transform import Rotation
 
 from toongeo.io import read_landmarks
 from toongeo.model import data_path
+from toongeo.model.anatomy.landmark_basis import landmark_basis
+from toongeo.model.anatomy.visible_landmarks import visible_landmarks
 from toongeo.model.ibug68 import INNER, MIRROR, OUTER_EYES, PARTS
 from toongeo.model.opposites import OPPOSITES
-from toongeo.pipeline.fit.contour import visible_landmarks
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
-from toongeo.pipeline.fit.landmark_problem import landmark_problem
+from toongeo.pipeline.fit.problem.starting_problem import starting_problem
 from toongeo.render import ScaledOrthographicCamera
 
 PICTURES = [
     "astronaut", "bad_guy", "beethoven", "blonde_girl_threequarter", "blue_girl", "manga_girl",
     "moustache_man",
 ]  # fmt: skip
-TIGHT = FitOptions(tolerance=1e-13, nod_deviation=1e6)
+TIGHT = FitOptions(tolerance=1e-13, pitch_deviation=1e6)
 
 
 def drawing(name):
@@ -56,7 +56,9 @@ def test_a_known_face_is_met_exactly_when_the_prior_is_weak(model, annotated, ra
     pixels = annotated(model, camera, *random_face(seed))
     pixels[PARTS["jaw"]] = np.nan  # without sliding points the loss is smooth, and zero at the truth
     errors = [
-        fit_3dmm(None, pixels, options=FitOptions(prior_weight=w, tolerance=1e-9, nod_deviation=1e6)).report.rms_percent
+        fit_3dmm(
+            None, pixels, options=FitOptions(prior_weight=w, tolerance=1e-9, pitch_deviation=1e6)
+        ).report.rms_percent
         for w in (1e-6, 1e-8)
     ]
     assert errors[1] < 0.1
@@ -80,7 +82,7 @@ def test_a_stronger_prior_is_a_smaller_face_and_a_larger_error(model, face):
 
 def test_the_minimum_is_one(model, face):
     """No small step within the bounds lowers the loss of a pass."""
-    problem = landmark_problem(model, face, FitOptions(tolerance=1e-14, max_passes=1))
+    problem = starting_problem(model, face, FitOptions(tolerance=1e-14, max_passes=1))
     problem = replace(problem, opposites=problem.opposites[:0])  # which are parted after a pass
     fit = problem.solve("LD_LBFGS")
     placed = visible_landmarks(problem.basis, problem.start[:144], problem.frame.rotation0)
@@ -376,7 +378,7 @@ def test_a_model_without_the_68_landmarks(model, face):
         ("tolerance", float("inf"), "tolerance: expected a finite number > 0"),
         ("prior_weight", "1", "prior_weight: expected a finite number > 0, got '1'"),
         ("prior_weight", True, "prior_weight: expected a finite number > 0, got True"),
-        ("nod_deviation", 0.0, "nod_deviation: expected a finite number > 0, got 0.0"),
+        ("pitch_deviation", 0.0, "pitch_deviation: expected a finite number > 0, got 0.0"),
         ("max_seconds", 0.0, "max_seconds: expected a finite number > 0, got 0.0"),
         ("refine", 1, "refine: expected one of True, False, got 1"),
         ("jaw_tangent", 1.5, r"jaw_tangent: expected a number in \[0, 1\], got 1.5"),

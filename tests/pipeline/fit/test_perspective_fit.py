@@ -5,12 +5,12 @@ import pytest
 
 from toongeo.io import read_landmarks
 from toongeo.model import data_path
+from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.ibug68 import MIRROR, PARTS
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
-from toongeo.pipeline.fit.landmark_loss import LandmarkLoss
-from toongeo.pipeline.fit.unknowns import Unknowns
+from toongeo.pipeline.fit.frame.unknowns import Unknowns
+from toongeo.pipeline.fit.losses.landmark_loss import LandmarkLoss
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 
 BLOCKS = ["identity", "expression", "rotation", "log_scale", "translation", "inverse_distance", "everything"]
@@ -92,7 +92,7 @@ def test_a_viewer_at_infinity_sees_the_orthographic_picture(loss, unknowns, x):
 def test_the_mean_face_is_found_with_its_pose(artist, yaw):
     points = camera(yaw).project(artist.mean[artist.landmarks])
     points[PARTS["jaw"]] = np.nan
-    options = FitOptions(camera="perspective", focal_px=900.0, robust=None, tolerance=1e-14, nod_deviation=1e6)
+    options = FitOptions(camera="perspective", focal_px=900.0, robust=None, tolerance=1e-14, pitch_deviation=1e6)
     fit = fit_3dmm(SIZE, points, model=artist, options=options)
     assert fit.camera.focal_px == pytest.approx(900.0)
     np.testing.assert_array_equal(fit.camera.principal_point, CENTRE)
@@ -106,7 +106,7 @@ def test_the_mean_face_is_found_with_its_pose(artist, yaw):
 def test_the_focal_length_is_found_roughly_when_the_face_is_known(artist):
     points = camera(25).project(artist.mean[artist.landmarks])
     points[PARTS["jaw"]] = np.nan
-    stiff = FitOptions(camera="perspective", prior_weight=1.0, robust=None, tolerance=1e-14, nod_deviation=1e6)
+    stiff = FitOptions(camera="perspective", prior_weight=1.0, robust=None, tolerance=1e-14, pitch_deviation=1e6)
     fit = fit_3dmm(SIZE, points, model=artist, options=stiff)
     assert fit.camera.focal_px == pytest.approx(900.0, rel=0.02)
     assert -fit.camera.translation[2] == pytest.approx(450.0, rel=0.02)

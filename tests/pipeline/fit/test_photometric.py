@@ -9,19 +9,19 @@ from toongeo.geometry import vertex_normals
 from toongeo.io import read_image, read_landmarks
 from toongeo.model.ibug68 import MIRROR
 from toongeo.pipeline import PhotometricOptions, photometric_fit, rendered_picture, residual_map
-from toongeo.pipeline.fit.canonical_frame import CanonicalFrame
-from toongeo.pipeline.fit.confidence import skin_likelihood
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.gauss_newton_step import gauss_newton_step
-from toongeo.pipeline.fit.light_and_albedo import best_light, light_penalty
-from toongeo.pipeline.fit.photometric_problem import PhotometricProblem
-from toongeo.pipeline.fit.photometric_samples import photometric_samples
-from toongeo.pipeline.fit.picture_plane import PicturePlane, picture_plane
-from toongeo.pipeline.fit.quadratic_model import QuadraticModel
-from toongeo.pipeline.fit.sample_normals import sample_normals
-from toongeo.pipeline.fit.shading_basis import shading_basis, shading_slope
-from toongeo.pipeline.fit.visible_samples import visible_samples
+from toongeo.pipeline.fit.frame.canonical_frame import CanonicalFrame
+from toongeo.pipeline.fit.photometric.gauss_newton_step import gauss_newton_step
+from toongeo.pipeline.fit.photometric.light_and_albedo import best_light, light_penalty
+from toongeo.pipeline.fit.photometric.photometric_problem import PhotometricProblem
+from toongeo.pipeline.fit.photometric.photometric_samples import photometric_samples
+from toongeo.pipeline.fit.photometric.quadratic_model import QuadraticModel
+from toongeo.pipeline.fit.photometric.rectified_picture import RectifiedPicture, rectified_picture
+from toongeo.pipeline.fit.photometric.sample_normals import sample_normals
+from toongeo.pipeline.fit.photometric.shading_basis import shading_basis, shading_slope
+from toongeo.pipeline.fit.photometric.skin_likelihood import skin_likelihood
+from toongeo.pipeline.fit.photometric.visible_samples import visible_samples
 from toongeo.render import (
     ScaledOrthographicCamera,
     Surface,
@@ -251,7 +251,7 @@ def test_normals_of_the_samples_are_those_of_the_mesh_and_their_slope_is_right(m
 
 
 def test_the_slope_of_the_picture_is_that_of_its_interpolant(rng):
-    plane = PicturePlane(rng.random((9, 7, 3), np.float32), np.ones((9, 7), np.float32), 0.5, -1.5, 2.0)
+    plane = RectifiedPicture(rng.random((9, 7, 3), np.float32), np.ones((9, 7), np.float32), 0.5, -1.5, 2.0)
     points = np.column_stack([rng.uniform(-1.4, 1.4, 40), rng.uniform(-1.9, 1.9, 40)])
     _, slope = plane.sample(points)
     for axis, step in enumerate(np.eye(2) * 1e-6):
@@ -336,7 +336,7 @@ def test_the_plane_shows_the_picture_upright_and_in_millimetres():
         ramp = np.linspace(0, 1, side)
         img = np.round(255 * linear_to_srgb(np.broadcast_to(ramp[None, :, None], (side, side, 3)))).astype(np.uint8)
         face = np.array([[-20.0, -25.0], [20.0, 25.0]])
-        plane = picture_plane(img, None, frame, face, step=0.6, blur=1.0)
+        plane = rectified_picture(img, None, frame, face, step=0.6, blur=1.0)
         points = np.array([[0.0, 0.0], [10.0, 5.0], [-15.0, 20.0]])
         expected = (frame.origin[0] + scale * points[:, 0]) / (side - 1)
         np.testing.assert_allclose(plane.sample(points)[0][:, 0], expected, atol=0.01)
@@ -348,7 +348,7 @@ def test_skin_is_the_commonest_colour():
     light = np.full((40, 60, 3), [0.1, 0.5, 0.15], np.float32)
     light[:, 40:] = [0.02, 0.012, 0.01]
     light *= np.linspace(0.7, 1.3, 40, dtype=np.float32)[:, None, None]  # shading
-    plane = PicturePlane(light, np.ones((40, 60), np.float32), 1.0, 0.0, 39.0)
+    plane = RectifiedPicture(light, np.ones((40, 60), np.float32), 1.0, 0.0, 39.0)
     core = np.stack(np.meshgrid(np.arange(60.0), np.arange(40.0)), 2).reshape(-1, 2)
     likelihood = skin_likelihood(plane, core)
     assert likelihood[:, :40].min() > 0.95

@@ -40,7 +40,7 @@ def test_the_answer_itself(artist, annotated, random_face):
     camera = ScaledOrthographicCamera.look(yaw=25, pitch=-5, roll=7)
     points = annotated(artist, camera, identity, expression)
     answer = Coefficients(identity=identity, expression=expression, albedo=np.ones(9), light=np.ones((3, 9)))
-    held = FitOptions(refine=False, nod_deviation=1e6)
+    held = FitOptions(refine=False, pitch_deviation=1e6)
     fit = fit_3dmm(None, points, model=artist, regressor=lambda img, landmarks: answer, options=held)
     np.testing.assert_array_equal(fit.identity, identity)
     np.testing.assert_array_equal(fit.expression, expression)

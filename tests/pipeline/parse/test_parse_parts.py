@@ -7,12 +7,12 @@ import pytest
 from toongeo.model.ibug68 import MIRROR
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.cut_out import cut_out
-from toongeo.pipeline.parse.find_lids import candidate_probabilities, find_lids, lid_weights
-from toongeo.pipeline.parse.lid_candidates import ARC, lid_candidates, lid_contour
-from toongeo.pipeline.parse.lid_features import lid_features
-from toongeo.pipeline.parse.lid_patch import CHANNELS, eye_points, lid_patch, lid_unit
+from toongeo.pipeline.parse.lids.find_lids import candidate_probabilities, find_lids, lid_weights
+from toongeo.pipeline.parse.lids.lid_candidates import ARC, lid_candidates, lid_contour
+from toongeo.pipeline.parse.lids.lid_features import lid_features
+from toongeo.pipeline.parse.lids.lid_patch import CHANNELS, eye_points, lid_patch, lid_unit
+from toongeo.pipeline.parse.lids.refine_lids import refine_lids
 from toongeo.pipeline.parse.masks import filled, grown
-from toongeo.pipeline.parse.refine_lids import refine_lids
 from toongeo.pipeline.parse.skin_surface import colour_mode, skin_surface
 from toongeo.pipeline.parse.working_view import working_view
 

@@ -10,10 +10,9 @@ import igl
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.caricature.bilinear_model import BilinearModel, bilinear_fit
-from toongeo.caricature.caricatured_modes import caricatured_modes
+from toongeo.caricature import BilinearModel, LinearFit, bilinear_fit, caricatured_modes, linear_fit
 from toongeo.caricature.fit_caricature import fit_caricature
-from toongeo.caricature.linear_fit import LinearFit, linear_fit
+from toongeo.model.anatomy.parts import TEETH_AND_TONGUE
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline import align_face, fit_3dmm
 from toongeo.protocols import HeadCamera
@@ -67,7 +66,7 @@ def arap_fit(face: FoundFace, model: MorphableModel, landmarks: Floats) -> Linea
 
     Parts without a landmark, teeth and tongue, stay.
     """
-    names = ("teeth_upper", "teeth_lower", "tongue")
+    names = TEETH_AND_TONGUE
     loose = np.any([model.region(name) for name in names if name in model.regions], axis=0)
     kept, seen = np.flatnonzero(~loose), np.isfinite(landmarks).all(axis=1)
     F = np.searchsorted(kept, model.faces[~loose[model.faces].any(axis=1)])

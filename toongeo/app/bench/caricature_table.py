@@ -11,8 +11,8 @@ from tqdm import tqdm
 from toongeo.app.bench.bench_folder import bench_folder
 from toongeo.app.bench.bench_table import BenchTable
 from toongeo.app.bench.caricature_methods import FoundFace, caricature_methods
-from toongeo.caricature.face_space import face_space
-from toongeo.io.read_landmarks import read_landmarks
+from toongeo.caricature import face_space
+from toongeo.io.readers.read_landmarks import read_landmarks
 from toongeo.metrics import mesh_quality
 from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import OUTER_EYES

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.load_eos import load_eos
+from toongeo.model import load_eos
 
 __all__ = ["EosRival"]
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from toongeo.app.bench.eos_rival import EosRival
 from toongeo.app.bench.face_crop import FaceCrop, face_crop
-from toongeo.avatar import Avatar
-from toongeo.make_avatar import make_avatar
+from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.make_avatar import make_avatar
 from toongeo.metrics import landmark_distance, photometric_error
 from toongeo.pipeline import AlignedFace, FaceFit, adjust_coefficients, fit_3dmm
 from toongeo.pipeline.fit.rendered_picture import face_surface

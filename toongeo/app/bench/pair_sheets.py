@@ -16,9 +16,9 @@ from tqdm import tqdm
 from toongeo.app.bench.bench_folder import bench_folder
 from toongeo.app.bench.face_crop import face_crop
 from toongeo.app.bench.plain_avatar import plain_avatar
-from toongeo.avatar import Avatar
+from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.make_avatar import make_avatar
 from toongeo.io import atomic_write, encode_image
-from toongeo.make_avatar import make_avatar
 from toongeo.pipeline import adjust_coefficients, fit_3dmm
 
 __all__ = ["BASELINES", "KEY", "QUESTIONS", "pair_sheets"]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.avatar import Avatar
-from toongeo.avatar_report import AvatarReport, landmark_errors
+from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.report import AvatarReport, landmark_errors
 from toongeo.metrics import mesh_quality
 from toongeo.pipeline import (
     AlignedFace,

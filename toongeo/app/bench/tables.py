@@ -15,8 +15,8 @@ from toongeo.app.bench.bench_folder import BenchPicture, bench_folder
 from toongeo.app.bench.bench_table import BenchTable
 from toongeo.app.bench.eos_rival import EosRival
 from toongeo.app.bench.method_errors import PHOTOMETRIC, method_errors
-from toongeo.avatar import Avatar
-from toongeo.make_avatar import STAGES, make_avatar
+from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.metrics.landmark_distance import TABLE_PARTS
 
 __all__ = ["table1", "table2", "table4"]

@@ -11,13 +11,13 @@ from toongeo._read_only import read_only
 from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.io import landmark_array
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
 from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.straighten_teeth import straighten_teeth
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
-from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.protocols import HeadCamera
 

@@ -3,10 +3,11 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
+from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model import MorphableModel
-from toongeo.pipeline.align.similarity import similarity
+from toongeo.model.anatomy.parts import MOUTH_PARTS, SOCKETS
+from toongeo.model.anatomy.rims import opening_rim
 
-MOUTH_PARTS = ("mouth_cavity", "teeth_upper", "teeth_lower", "tongue")
 REACH = 0.5  # of the lips' size: over this distance into the mouth the lips' own deformation dies out
 
 
@@ -25,17 +26,10 @@ def carry_inner_parts(model: MorphableModel, before: np.ndarray, after: np.ndarr
         ``after`` with sockets, mouth cavity, teeth and tongue moved.
     """
     carried = after.copy()
-    for side, name in enumerate(("socket_left", "socket_right")):
+    for side, name in enumerate(SOCKETS):
         _carry_socket(model, name, model.eyes[side].radius, before, carried)
     _carry_mouth(model, before, carried)
     return carried
-
-
-def opening_rim(model: MorphableModel, part: str) -> np.ndarray:
-    """Skin vertices (k,) that share a triangle with an inner part: lid margins, inner lips."""
-    inside = model.region(part)
-    touching = model.faces[inside[model.faces].any(1)]
-    return np.setdiff1d(touching, np.flatnonzero(inside))
 
 
 def _carry_socket(model: MorphableModel, name: str, radius: float, before: np.ndarray, carried: np.ndarray) -> None:

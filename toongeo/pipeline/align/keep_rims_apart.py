@@ -3,7 +3,7 @@
 import numpy as np
 
 from toongeo.model import MorphableModel
-from toongeo.pipeline.align.rim_anchors import rim_path
+from toongeo.model.anatomy.rims import rim_path
 from toongeo.protocols import HeadCamera
 
 PAIRS = (

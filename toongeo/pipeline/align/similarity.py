@@ -1,5 +1,5 @@
 """Least-squares similarity between two point sets."""
 
-from toongeo.geometry.similarity import similarity
+from toongeo.geometry.rotations.similarity import similarity
 
 __all__ = ["similarity"]

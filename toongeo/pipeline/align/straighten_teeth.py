@@ -3,7 +3,7 @@
 import numpy as np
 
 from toongeo.model import MorphableModel
-from toongeo.pipeline.align.rim_anchors import rim_path
+from toongeo.model.anatomy.rims import rim_path
 
 # What hangs on the upper lip's side of the mouth, and what on the lower one's.
 PARTS_OF_RIM = {"lip_upper_inner": ("teeth_upper",), "lip_lower_inner": ("teeth_lower", "tongue")}

@@ -5,9 +5,9 @@ from typing import Literal
 import numpy as np
 
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.pipeline.align.symmetric_field import FieldPrior, most_likely_field
-from toongeo.pipeline.align.visible_contour import visible_contour
 from toongeo.protocols import HeadCamera
 
 STRIDE = 0.1  # outer-eye distances; the farthest landmark goes so far in a step

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.io.check_landmarks import check_landmarks
+from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.pipeline.fit.face_fit import FaceFit
-from toongeo.pipeline.fit.inner_error import inner_error
-from toongeo.pipeline.fit.landmark_basis import landmark_basis
-from toongeo.pipeline.fit.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.landmarks.inner_error import inner_error
+from toongeo.pipeline.fit.losses.nlopt_minimize import nlopt_minimize
 from toongeo.protocols import HeadCamera
 
 __all__ = ["ADJUSTMENTS", "DistanceLoss", "adjust_coefficients"]

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
-
-if TYPE_CHECKING:
-    from toongeo.model.morphable_model import MorphableModel
-    from toongeo.protocols import HeadCamera
+from toongeo.model.morphable_model import MorphableModel
+from toongeo.protocols import HeadCamera
 
 __all__ = ["FaceFit", "FitReport", "PhotometricReport"]
 

@@ -18,14 +18,14 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.adjust_coefficients import adjust_coefficients
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
-from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
-from toongeo.pipeline.fit.landmark_fit import LandmarkFit
-from toongeo.pipeline.fit.landmark_problem import landmark_problem
-from toongeo.pipeline.fit.landmark_table import landmark_table, table_landmarks
-from toongeo.pipeline.fit.nlopt_minimize import known_algorithms
+from toongeo.pipeline.fit.landmarks.ibug_landmarks import ibug_landmarks
+from toongeo.pipeline.fit.landmarks.landmark_table import landmark_table, table_landmarks
+from toongeo.pipeline.fit.losses.nlopt_minimize import known_algorithms
 from toongeo.pipeline.fit.photometric_fit import photometric_fit
-from toongeo.pipeline.fit.solution import Solution
-from toongeo.pipeline.fit.solve_together import solve_together
+from toongeo.pipeline.fit.problem.joint_fit import joint_fit
+from toongeo.pipeline.fit.problem.landmark_problem import LandmarkProblem
+from toongeo.pipeline.fit.problem.solution import Solution
+from toongeo.pipeline.fit.problem.starting_problem import starting_problem
 from toongeo.protocols import Coefficients, Regressor
 
 __all__ = ["fit_3dmm"]
@@ -153,7 +153,7 @@ def fit_3dmm(
     tasks = [_task(*picture, model, options, regressor) for picture in pictures]
     with one_thread():
         if together:
-            solutions = solve_together([task.problem for task in tasks], algorithm)
+            solutions = joint_fit([task.problem for task in tasks], algorithm)
         else:
             solutions = [tasks[0].problem.solve(algorithm)]
         seconds = time.perf_counter() - started
@@ -186,7 +186,7 @@ class _Task:
     """One picture's problem, and what else its result says."""
 
     model: MorphableModel
-    problem: LandmarkFit
+    problem: LandmarkProblem
     pixels: NDArray[np.float64]
     guess: Coefficients
     warnings: list[str]
@@ -219,7 +219,7 @@ def _task(
     if not isinstance(guess, Coefficients):
         raise ValueError(f"regressor: expected one that returns Coefficients, got {type(guess).__name__}")
     with one_thread():
-        problem = landmark_problem(model, pixels, options, guess, table, _centre(image_shape))
+        problem = starting_problem(model, pixels, options, guess, table, _centre(image_shape))
     return _Task(model, problem, pixels, guess, warnings)
 
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS
 from toongeo.pipeline.fit.check_positive import check_positive
-from toongeo.pipeline.fit.ibug_landmarks import SCHEMES
-from toongeo.pipeline.fit.robust_weights import KERNELS
+from toongeo.pipeline.fit.landmarks.ibug_landmarks import SCHEMES
+from toongeo.pipeline.fit.landmarks.robust_weights import KERNELS
 
 __all__ = ["FitOptions", "changed_options"]
 
@@ -21,7 +21,7 @@ CONTOURS = ("lines", "silhouette")
 CAMERAS = ("orthographic", "perspective")
 _COUNTS = ("max_passes", "max_evaluations")
 _NUMBERS = (
-    "landmark_weight", "prior_weight", "landmark_deviation", "nod_deviation", "identity_weight",
+    "landmark_weight", "prior_weight", "landmark_deviation", "pitch_deviation", "identity_weight",
     "expression_weight", "jaw_weight", "jaw_tangent", "max_deviation", "tolerance",
 )  # fmt: skip
 
@@ -37,7 +37,7 @@ class FitOptions:
     landmark_deviation : float
         Standard deviation of the misfit of a coordinate that is expected of people, in outer-eye distances. Where a
         face (a caricature, say) misses its landmarks by more, ``w_r`` grows with the square of the misfit.
-    nod_deviation : float, degrees
+    pitch_deviation : float, degrees
         Standard deviation of the pitch of heads in pictures.
     identity_weight, expression_weight : float
         ``w_id`` and ``w_exp`` of Eq. 6.
@@ -87,7 +87,7 @@ class FitOptions:
     landmark_weight: float = 1.0
     prior_weight: float = 4e-6
     landmark_deviation: float = 0.014
-    nod_deviation: float = 6.0
+    pitch_deviation: float = 6.0
     identity_weight: float = 1.0
     expression_weight: float = 4.0
     jaw_weight: float = 0.015

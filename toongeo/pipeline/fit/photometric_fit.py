@@ -15,8 +15,8 @@ from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.pipeline.fit.face_fit import FaceFit, PhotometricReport
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.photometric.photometric_problem import PhotometricProblem
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
-from toongeo.pipeline.fit.photometric_problem import PhotometricProblem
 
 __all__ = ["photometric_fit"]
 

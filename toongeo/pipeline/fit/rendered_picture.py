@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry.vertex_normals import vertex_normals
+from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.render.paint_table import Shading
 from toongeo.render.render_mesh import render_mesh

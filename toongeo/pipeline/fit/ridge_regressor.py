@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
 from toongeo.geometry.one_thread import one_thread
+from toongeo.model.anatomy.landmark_basis import LandmarkBasis, landmark_basis
+from toongeo.model.anatomy.visible_landmarks import visible_landmarks
 from toongeo.model.ibug68 import INNER
 from toongeo.model.morphable_model import MorphableModel
-from toongeo.pipeline.fit.canonical_frame import canonical_frame
-from toongeo.pipeline.fit.contour import visible_landmarks
-from toongeo.pipeline.fit.landmark_basis import LandmarkBasis, landmark_basis
+from toongeo.pipeline.fit.frame.canonical_frame import canonical_frame
 from toongeo.protocols import Coefficients
 from toongeo.render.camera import ScaledOrthographicCamera
 

@@ -15,8 +15,8 @@ from toongeo.model.default_model import default_model
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.face_zones import FaceZones, face_zones
-from toongeo.pipeline.parse.find_lids import Lids, find_lids
 from toongeo.pipeline.parse.head_and_skin import HeadAndSkin, head_and_skin
+from toongeo.pipeline.parse.lids.find_lids import Lids, find_lids
 from toongeo.pipeline.parse.masks import Mask, filled, grown
 from toongeo.pipeline.parse.working_view import WorkingView, working_view
 from toongeo.protocols import FaceLabel, FaceParse, FittedFace

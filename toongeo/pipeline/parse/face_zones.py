@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.model.ibug68 import LIP_RIMS, PARTS
-from toongeo.pipeline.parse.lid_patch import lid_unit
+from toongeo.pipeline.parse.lids.lid_patch import lid_unit
 from toongeo.pipeline.parse.masks import Mask, filled, grown
 from toongeo.pipeline.parse.working_view import WorkingView
 from toongeo.protocols import FittedFace

@@ -7,7 +7,7 @@ import os
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.io.read_image import read_image
+from toongeo.io import read_image
 from toongeo.protocols import HairMask
 
 __all__ = ["given_hair"]

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.pipeline.parse.cielab import cielab
+from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.cut_out import cut_out
 from toongeo.pipeline.parse.face_zones import FaceZones

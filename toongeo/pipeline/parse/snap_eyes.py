@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import LID_RIMS
-from toongeo.pipeline.parse.eye_boundary import EyeBoundary, eye_boundary
-from toongeo.pipeline.parse.lid_patch import EYES_APART
+from toongeo.pipeline.parse.lids.eye_boundary import EyeBoundary, eye_boundary
+from toongeo.pipeline.parse.lids.lid_patch import EYES_APART
 from toongeo.protocols import FaceLabel, FaceParse
 
 __all__ = ["snap_eyes"]

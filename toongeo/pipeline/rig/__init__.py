@@ -1,1 +1,5 @@
 """Expressions, eyes and what moves them."""
+
+from toongeo._lazy import attach
+
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

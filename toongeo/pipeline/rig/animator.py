@@ -6,9 +6,10 @@ from typing import Protocol
 import numpy as np
 
 from toongeo.geometry import vertex_normals
+from toongeo.model.anatomy.gaze import GAZE_NAMES
+from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.rig.add_rows import add_rows
-from toongeo.pipeline.rig.fit_eyes import SIDES, Eyes
-from toongeo.pipeline.rig.gaze import GAZE_NAMES
+from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.rig import Rig
 
 Weights = Mapping[str, float] | np.ndarray | None

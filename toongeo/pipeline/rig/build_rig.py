@@ -7,13 +7,13 @@ from typing import Literal
 import numpy as np
 
 from toongeo.geometry import DeformationTransfer
-from toongeo.geometry._source_motion import SourceMotion, source_motion
+from toongeo.geometry.source_motion import SourceMotion, source_motion
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.gaze import GAZE_NAMES
+from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.feature_gains import feature_gains
-from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.rig import Rig
-from toongeo.pipeline.rig.still_vertices import still_vertices
 
 AT_ONCE = 5  # expressions solved for together: 15 right-hand sides still fit the cache
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from toongeo.geometry import DeformationTransfer
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.model.expression_features import FEATURE_OF, FEATURES, Feature
-from toongeo.pipeline.rig.still_vertices import still_vertices
 
 RANGE = (0.5, 2.0)  # gains beyond would tear what lies between two features
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from toongeo.geometry import DeformationTransfer, laplacian_align
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.rims import rim_path
+from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.model.expression_features import REMOVED, SIGNS
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
-from toongeo.pipeline.align.rim_anchors import rim_path
-from toongeo.pipeline.rig.still_vertices import still_vertices
 
 SURE = (0.3, 0.6)  # weights of a sign from which an expression begins to be removed, and is removed wholly
 PARTED = (0.1, 0.2)  # the same for the gap between the lips, in widths of the mouth

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo._read_only import read_only
+from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.expression_schemes import SCHEMES
 from toongeo.model.expression_weights import expression_weights
 from toongeo.pipeline.rig.add_rows import add_rows
-from toongeo.pipeline.rig.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.weight_vector import weight_vector
 
 

@@ -1,1 +1,5 @@
 """The picture on the face: texture coordinates, baking, diffusion."""
+
+from toongeo._lazy import attach
+
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

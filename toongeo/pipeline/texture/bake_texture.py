@@ -9,9 +9,9 @@ from toongeo.io import check_image
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.rig import Rig
-from toongeo.pipeline.texture.delit import delit
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import FacePicture, face_picture
+from toongeo.pipeline.texture.remove_shading import remove_shading
 from toongeo.pipeline.texture.sample_area import sample_area
 from toongeo.pipeline.texture.unseen_colours import unseen_colours
 from toongeo.protocols import FaceParse
@@ -73,7 +73,7 @@ def bake_texture(
     check_size(size)
     picture = face_picture(img, face, parse)
     if delight:
-        picture = dataclasses.replace(picture, pixels=delit(picture, face))
+        picture = dataclasses.replace(picture, pixels=remove_shading(picture, face))
     unseen, offset = unseen_colours(face, picture)
     atlas = _atlas_fragments(face.model, size)
     texels = np.flatnonzero(atlas.mask)

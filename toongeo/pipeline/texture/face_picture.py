@@ -8,7 +8,7 @@ from scipy.interpolate import CubicSpline
 
 from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.texture.skin_of import amid, resized, skin_of, skin_weight
+from toongeo.pipeline.texture.skin_mask import amid, resized, skin_mask, skin_weight
 from toongeo.protocols import FaceLabel, FaceParse
 from toongeo.render import Fragments, rasterize
 
@@ -114,7 +114,7 @@ def face_picture(img: np.ndarray, face: AlignedFace, parse: FaceParse | None = N
     box = slice(start[1], end[1]), slice(start[0], end[0])
     parts = None if parse is None else resized(parse.labels[box], crop.shape, cv2.INTER_NEAREST)
     width = float(np.ptp(landmarks[:, 0]))
-    skin, sure = skin_of(crop, landmarks, front, parts, max(1, round(RIM * width)))
+    skin, sure = skin_mask(crop, landmarks, front, parts, max(1, round(RIM * width)))
     weight = skin_weight(skin, openings, FEATHER * width)
     if parse is not None:
         # Amid the face a parser may doubt whether it sees lip or skin, but not whether it sees the face.

@@ -1,0 +1,137 @@
+import cv2
+import numpy as np
+import pytest
+
+from toongeo import ExpressionEditor, edit_expression, fit_3dmm
+from toongeo.editing.edit_expression import reference_weights
+
+OPEN = {"jawOpen": 0.6}
+
+
+@pytest.fixture(scope="module")
+def picture(cartoon):
+    return cartoon("moustache_man")
+
+
+@pytest.fixture(scope="module")
+def editor(picture, avatar):
+    return ExpressionEditor(*picture, avatar=avatar)
+
+
+def difference(a, b):
+    return np.abs(a.astype(int) - b)
+
+
+def test_the_pictures_own_expression_gives_the_picture(editor, picture):
+    same = difference(editor.frame(editor.pose), picture[0])
+    assert same.mean() < 0.3
+    assert same[editor.region].mean() < 1.0
+
+
+@pytest.mark.parametrize(
+    "weights", [OPEN, {"mouthSmileLeft": 1.0}, {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}, {"browInnerUpLeft": 1.0}]
+)
+def test_nothing_changes_outside_the_region(editor, picture, weights):
+    frame = editor.frame(weights)
+    changed = difference(frame, picture[0]).max(2) > 0
+    assert changed.any()
+    assert not changed[~editor.region].any()
+
+
+def test_hair_and_ears_stay(editor, picture):
+    from toongeo import FaceLabel
+
+    hair = editor.avatar.parse.mask(FaceLabel.HAIR)
+    hair[150:] = False  # the moustache, which moves with the lip
+    hair = cv2.erode(hair.astype(np.uint8), np.ones((7, 7), np.uint8)).astype(bool)  # no thin tips
+    assert hair.sum() > 1000
+    changed = difference(editor.frame({"browOuterUpLeft": 1.0, "browOuterUpRight": 1.0} | OPEN), picture[0]).max(2) > 0
+    assert not changed[hair].any()
+
+
+def test_features_go_where_the_mesh_goes(editor, picture):
+    """The drawn outline of the chin lies at the moved chin: the frame sampled there is the picture at the old one."""
+    before, after = editor.landmarks(editor.pose), editor.landmarks({"jawLeft": 0.6})
+    frame = editor.frame({"jawLeft": 0.6})
+    corner = slice(48, 49)
+    old, new = np.rint(before[corner]).astype(int)[0], np.rint(after[corner]).astype(int)[0]
+    assert np.abs(new - old).max() >= 2
+    patches = [img[y - 6 : y + 7, x - 6 : x + 7].mean((0, 1)) for img, (x, y) in ((picture[0], old), (frame, new))]
+    assert np.abs(patches[0] - patches[1]).max() < 20
+
+
+def test_closed_eyes_show_skin_where_the_eye_was(editor, picture):
+    frame = editor.frame({"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0})
+    landmarks = editor.landmarks(editor.pose)
+    for eye in (slice(36, 42), slice(42, 48)):
+        x, y = np.rint(landmarks[eye].mean(0)).astype(int)
+        skin = np.median(picture[0][y + 25 : y + 35, x - 5 : x + 6], axis=(0, 1))
+        assert np.abs(np.median(frame[y - 5 : y + 1, x - 4 : x + 5], axis=(0, 1)) - skin).max() < 45
+
+
+def test_gaze_is_kept_unless_it_is_named(editor):
+    kept = editor.weights(OPEN)
+    turned = editor.weights(OPEN | {"eyeLookOutLeft": 1.0})
+    assert (kept[46:] == editor.pose[46:]).all()
+    assert turned[46:].sum() == 1
+
+
+def test_a_known_pose_is_the_zero_of_the_motion(picture, avatar):
+    posed = ExpressionEditor(*picture, avatar=avatar, pose=OPEN)
+    assert np.allclose(posed.vertices(OPEN), avatar.face.vertices, atol=1e-5)
+
+
+def test_same_input_same_frame(editor):
+    assert (editor.frame(OPEN) == editor.frame(OPEN)).all()
+
+
+def test_a_picture_that_was_changed_is_refused(picture, avatar):
+    img = picture[0].copy()
+    editor = ExpressionEditor(img, picture[1], avatar=avatar)
+    img[0, 0] ^= 255
+    with pytest.raises(ValueError, match="img: expected the picture that was fitted"):
+        editor.frame(OPEN)
+
+
+def test_expressions_that_do_not_exist_are_refused(editor):
+    with pytest.raises(ValueError, match="did you mean mouthSmileLeft"):
+        editor.frame({"mouthSmileLef": 1.0})
+    with pytest.raises(ValueError, match="weights: expected"):
+        editor.frame(np.zeros(7))
+    with pytest.raises(ValueError, match="weights: expected finite"):
+        editor.frame({"jawOpen": np.nan})
+
+
+def test_textures_of_another_size_are_refused(picture, avatar):
+    from toongeo import ClassicalTextureGenerator
+
+    small = np.zeros((64, 64, 3), np.uint8)
+    editor = ExpressionEditor(
+        *picture, avatar=avatar, generator=ClassicalTextureGenerator(avatar.face.model, avatar.rig, small)
+    )
+    with pytest.raises(ValueError, match="texture: expected 64 x 64 texels"):
+        editor.frame(OPEN)
+
+
+def test_a_reference_lends_its_expression(cartoon, editor):
+    _, landmarks = cartoon("astronaut")
+    fit = fit_3dmm(None, landmarks)
+    assert reference_weights((None, landmarks)) == fit.expression_weights()
+    assert (editor.frame(fit) == editor.frame(fit.expression_weights())).all()
+
+
+def test_edit_expression_is_one_frame(picture):
+    frame = edit_expression(*picture, OPEN)
+    assert frame.shape == picture[0].shape
+    assert (frame == ExpressionEditor(*picture).frame(OPEN)).all()
+
+
+def test_bad_arguments(picture):
+    with pytest.raises(ValueError, match="expected one of them, got neither"):
+        edit_expression(*picture)
+    with pytest.raises(ValueError, match="expected one of them, got both"):
+        edit_expression(*picture, OPEN, reference=(None, picture[1]))
+    with pytest.raises(ValueError, match="reference: no face could be fitted"):
+        edit_expression(*picture, reference=(None, np.full((68, 2), np.nan)))
+    with pytest.raises(ValueError, match="reference: expected a picture and its landmarks"):
+        edit_expression(*picture, reference=3)

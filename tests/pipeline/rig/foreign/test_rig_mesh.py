@@ -1,0 +1,185 @@
+"""Foreign heads: the model's own mesh gets its own expressions, and others get them nearly."""
+
+import dataclasses
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from toongeo.model.anatomy.rims import rim_path
+from toongeo.model.ibug68 import INNER
+from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
+from toongeo.pipeline.rig.foreign.close_gaps import _heights, close_gaps
+from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
+from toongeo.pipeline.rig.foreign.rig_mesh import rig_mesh
+
+SHIFT = np.array([3.0, -2.0, 9.0])
+
+
+@pytest.fixture(scope="module")
+def turn():
+    Q, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))
+    return Q * np.sign(np.linalg.det(Q))
+
+
+@pytest.fixture(scope="module")
+def shuffled(model, turn):
+    """The model's own mean, its vertices in another order, turned, shrunk and moved; with eyeballs of its own."""
+    order = np.random.default_rng(0).permutation(len(model.mean))
+    place = np.argsort(order)
+    V, F = model.mean[order], place[model.faces]
+    for eye in model.eyes:
+        F = np.vstack([F, eye.faces + len(V)])
+        V = np.vstack([V, eye.centre + eye.radius * eye.vertices])
+    V = 0.01 * V @ turn.T + SHIFT
+    points = V[place[model.landmarks]]
+    points[:17] = np.nan
+    return order, points, rig_mesh(V, F, points)
+
+
+@pytest.fixture(scope="module")
+def ict(shared):
+    return load_ict_facekit(shared / "data" / "models" / "ict_facekit" / "ict_facekit_light.npz")
+
+
+@pytest.fixture(scope="module")
+def ict_rig(ict):
+    return rig_mesh(ict.mean, ict.faces, ict.landmarks)
+
+
+def test_the_models_own_mesh_gets_its_own_expressions(model, shuffled, turn):
+    order, _, rig = shuffled
+    n = len(order)
+    expected = model.expression[: model.n_named, order]
+    found = rig.deltas[:, :n] @ turn / 0.01
+    assert rig.names == model.expression_names[: model.n_named]
+    skin = (model.region("skin") | model.region("neck"))[order]
+    np.testing.assert_allclose(found[:, skin], expected[:, skin], atol=0.05)  # mm; what hardly moves is held
+    error, motion = (np.linalg.norm(x, axis=2).sum(1) for x in (found - expected, expected))
+    assert (error < 0.25 * motion).all()  # with the inside of the mouth, which is not looked for
+
+
+def test_eyeballs_stay(shuffled):
+    order, _, rig = shuffled
+    assert not rig.deltas[:, len(order) :].any()
+
+
+def test_the_rig_is_in_the_frame_of_the_mesh(shuffled):
+    _, points, rig = shuffled
+    moved = np.linalg.norm(rig.vertices({"jawOpen": 1.0}) - rig.neutral, axis=1).max()
+    size = np.linalg.norm(points[36] - points[45])
+    assert 0.2 * size < moved < size
+    np.testing.assert_array_equal(rig.vertices(), rig.neutral)
+
+
+def test_there_and_back_all_expressions_return(model, ict):
+    spec = importlib.util.spec_from_file_location("register", Path(__file__).parents[4] / "benchmarks" / "register.py")
+    benchmark = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(benchmark)
+    errors = benchmark.relative_errors(model, benchmark.round_trip(model, ict))
+    unknown = [name for name, error in zip(model.expression_names, errors, strict=False) if np.isnan(error)]
+    assert unknown == ["tongueOut"]  # this head has no tongue
+    assert np.nanmax(errors) <= 0.15
+
+
+def test_upper_lips_and_lids_move_as_upper_ones(model, ict, ict_rig):
+    """Every landmark of another head moves as the template's, in direction and about in length."""
+    size = np.linalg.norm(ict.mean[ict.landmarks[45]] - ict.mean[ict.landmarks[36]]) / np.linalg.norm(
+        model.mean[model.landmarks[45]] - model.mean[model.landmarks[36]]
+    )
+    for name in ("jawOpen", "mouthUpperUpLeft", "mouthLowerDownRight", "mouthShrugLower", "eyeBlinkRight"):
+        k = ict_rig.names.index(name)
+        found, expected = ict_rig.deltas[k, ict.landmarks[INNER]], size * model.expression[k, model.landmarks[INNER]]
+        assert np.linalg.norm(found - expected, axis=1).max() < 0.35 * np.linalg.norm(expected, axis=1).max()
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_blink_closes_the_eyes_of_another_head(ict, ict_rig, side):
+    closed = ict_rig.vertices({f"eyeBlink{side.capitalize()}": 1.0})
+    rims = [rim_path(ict, f"lid_{lid}_{side}") for lid in ("upper", "lower")]
+    open_eye, closed_eye = (_heights(ict.mean, V, *rims)[0] for V in (ict.mean, closed))
+    assert closed_eye.max() < 0.05 * open_eye.max()
+
+
+def test_a_taller_eye_is_closed(model):
+    blink = model.expression[model.expression_index("eyeBlinkLeft")]
+    upper, lower = rim_path(model, "lid_upper_left"), rim_path(model, "lid_lower_left")
+    tall = model.mean.copy()
+    near = np.exp(-(np.linalg.norm(tall - model.mean[upper].mean(0), axis=1) ** 2) / 200)
+    tall[:, 1] += 4.0 * near * (tall[:, 1] > model.mean[lower, 1].mean())
+    before = tall + blink
+    after = close_gaps(model, tall, before, "left")
+    assert _heights(tall, before, upper, lower)[0].max() > 1.0
+    assert _heights(tall, after, upper, lower)[0].max() < 0.05
+    still = ~(model.region("eye_left") | model.region("socket_left"))
+    np.testing.assert_array_equal(after[still], before[still])
+    np.testing.assert_array_equal(close_gaps(model, model.mean, model.mean + blink, "left"), model.mean + blink)
+
+
+def test_a_tooth_moves_with_its_row_and_does_not_bend(rng):
+    skin, tooth, row = rng.normal(size=(20, 3)), rng.normal(size=(8, 3)) + 5, rng.normal(size=(30, 3)) + 5
+    V = np.vstack([skin, tooth])
+    F = np.vstack([[(k, k + 1, k + 2) for k in range(18)], [(20 + k, 21 + k, 22 + k) for k in range(6)]])
+    shapes = rng.normal(0, 0.1, size=(3, 28, 3))
+    of_row = np.arange(60) < 30
+    drop = np.array([[0, -2.0, 0], [1, 0, 0], [0, 0, 0]])[:, None] * of_row[:, None]
+    within = MouthParts(np.vstack([row, row + 100]), drop, of_row, (of_row, ~of_row))
+    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(28) < 20, within)
+    np.testing.assert_array_equal(found[:, :20], shapes[:, :20])
+    np.testing.assert_allclose(found[:, 20:], np.broadcast_to(drop[:, :1], (3, 8, 3)), atol=1e-12)
+    bent = dataclasses.replace(within, shapes=drop + rng.normal(0, 0.1, size=(3, 60, 3)))
+    for shape in settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(28) < 20, bent):
+        pairs = [np.linalg.norm(x[:, None] - x, axis=2) for x in (tooth, tooth + shape[20:])]
+        np.testing.assert_allclose(pairs[0], pairs[1], atol=1e-12)
+
+
+def test_a_lash_moves_as_the_lid_it_grows_on():
+    """A strip that stands on the edge of a plate and leans over it: all of it moves as the edge."""
+    x, y = np.meshgrid(np.linspace(0, 4, 5), np.linspace(0, 8, 9), indexing="ij")
+    plate = np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])
+    strip = np.array([[z, k, z] for k in range(1, 8) for z in (0.1, 1.0, 2.0, 3.0)])
+    V = np.vstack([plate, strip])
+    F = np.vstack([[(k, k + 1, k + 9) for k in range(36)], [(45 + k, 46 + k, 47 + k) for k in range(26)]])
+    shapes = np.zeros((1, len(V), 3))
+    shapes[0, :9, 1] = -1.0  # the edge x = 0
+    within = MouthParts(plate, shapes[:, :45], np.zeros(45, bool), ())
+    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(len(V)) < 45, within)
+    np.testing.assert_array_equal(found[0, 45:], np.broadcast_to([0, -1.0, 0], (28, 3)))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"V": np.zeros((0, 3))}, "V: expected real numbers"),
+        ({"F": [[0, 1, 10**6]]}, "F: expected indices in"),
+        ({"landmarks": np.arange(67)}, "landmarks: expected 68 vertices or points .* got 67"),
+        ({"landmarks": np.full(68, -1)}, "landmarks: expected vertex indices in"),
+        ({"landmarks": np.full((68, 3), np.nan)}, "landmarks: expected at least 12 of the points 17-67, got 0"),
+        ({"landmarks": np.full((68, 2), 1.0)}, r"landmarks: expected vertex indices \(k,\) or points \(k, 3\)"),
+        ({"landmarks": np.full((68, 3), np.inf)}, "landmarks: expected finite coordinates or NaN"),
+        ({"landmarks": np.zeros(68, int)}, "landmarks: expected the points of a face, got one place for all"),
+        ({"landmarks": np.arange(68) * 250}, "landmarks: expected the points of a face in the order of iBUG-68"),
+    ],
+)
+def test_bad_input_is_named(model, change, message):
+    arguments = {"V": model.mean, "F": model.faces, "landmarks": model.landmarks, **change}
+    with pytest.raises(ValueError, match=message):
+        rig_mesh(**arguments)
+
+
+def test_a_head_that_is_inside_out_is_refused(model):
+    front = model.faces[model.region("face")[model.faces].all(1)]
+    with pytest.raises(ValueError, match=r"V(_target)?: expected .* triangles"):
+        rig_mesh(model.mean, front[:, ::-1], model.landmarks)
+
+
+def test_a_model_without_eyes_will_do(model):
+    """A front of the face alone, rigged by a model that has no regions but the front."""
+    small = dataclasses.replace(
+        model, regions={k: model.regions[k] for k in ("face", "mouth", "eye_left", "eye_right")}
+    )
+    front = model.faces[model.region("face")[model.faces].all(1)]
+    rig = rig_mesh(model.mean, front, model.landmarks, model=small)
+    unused = np.setdiff1d(np.arange(len(model.mean)), front)
+    assert not rig.deltas[:, unused].any() and rig.report["partnered"] > 0.9

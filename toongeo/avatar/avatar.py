@@ -1,0 +1,204 @@
+"""A textured, rigged face."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from toongeo.avatar.save_avatar import save_avatar
+from toongeo.avatar.stages import AvatarStages
+from toongeo.model.anatomy.gaze import GAZE_NAMES
+from toongeo.protocols import Camera
+from toongeo.render import (
+    ScaledOrthographicCamera,
+    Surface,
+    irradiance,
+    render_mesh,
+    studio_light,
+)
+
+HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
+Weights = Mapping[str, float] | np.ndarray | None
+
+
+@dataclass(frozen=True, eq=False)
+class Avatar(AvatarStages):
+    """What :func:`toongeo.make_avatar` builds; every stage's result is kept.
+
+    Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
+    ``eyes``, ``texture`` and ``report``.
+    """
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The 46 expressions of the rig. The eight ``eyeLook*`` names, which turn the eyes, are not among them."""
+        return self.rig.names
+
+    @property
+    def pose(self) -> dict[str, float]:
+        """The weights, without zeros, with which the avatar looks as in its picture.
+
+        Expressions are those that :func:`toongeo.neutral_face` took out of the face (``rig.pose``), ``eyeLook*`` the
+        gaze (``eyes.pose``). ``avatar.render(avatar.pose)`` shows the picture's face, ``avatar.render()`` one at rest.
+        """
+        names, weights = (*self.names, *GAZE_NAMES), np.r_[self.rig.pose, self.eyes.pose]
+        return {name: weight for name, weight in zip(names, weights.tolist(), strict=True) if weight != 0}
+
+    @property
+    def faces(self) -> np.ndarray:
+        """Triangles (m, 3) of the head; the eyeballs are meshes of their own."""
+        return self.face.faces
+
+    def vertices(self, weights: Weights = None) -> np.ndarray:
+        """Vertices (n, 3) of the head, mm, model frame (Pan et al. 2024, Eq. 13).
+
+        Parameters
+        ----------
+        weights : mapping of name to weight, (46,) array in the order of ``names``, (54,) array, or None
+            1 is the full expression. ``eyeLook*`` names, the last eight of a (54,) array, turn the eyeballs and move
+            the lids a little.
+
+        Raises
+        ------
+        ValueError
+            If a name is unknown (the nearest are suggested), an array has another length, or a weight is not finite.
+        """
+        return self.rig.vertices(weights)
+
+    def eye_vertices(self, side: int, weights: Weights = None) -> np.ndarray:
+        """Vertices (k, 3), mm, of the left (0) or right (1) eyeball; weights and errors as for :meth:`vertices`."""
+        if side not in (0, 1):
+            raise ValueError(f"side: expected 0 (left) or 1 (right), got {side!r}")
+        gaze = self.rig.weights(weights)[len(self.names) :]
+        return self.eyes.looking(side, dict(zip(GAZE_NAMES, gaze.tolist(), strict=True)))
+
+    def surfaces(self, weights: Weights = None) -> list[Surface]:
+        """Head, left and right eyeball, textured, for :func:`toongeo.render_mesh`."""
+        model = self.face.model
+        head = Surface(self.vertices(weights), model.faces, uv=model.uv, uv_faces=model.uv_faces, texture=self.texture)
+        eyes = [
+            Surface(
+                self.eye_vertices(side, weights),
+                eye.faces,
+                uv=eye.uv,
+                uv_faces=eye.faces,
+                texture=self.texture,
+            )
+            for side, eye in enumerate(model.eyes)
+        ]
+        return [head, *eyes]
+
+    def render(
+        self,
+        weights: Weights = None,
+        size: int = 512,
+        yaw: float = 0.0,
+        pitch: float = 0.0,
+        textured: bool = True,
+        *,
+        camera: Camera | None = None,
+    ) -> np.ndarray:
+        """Picture of the head.
+
+        Parameters
+        ----------
+        weights
+            As for :meth:`vertices`.
+        size : int
+            Side of the picture, px.
+        yaw, pitch : float
+            Degrees; yaw > 0 turns the face to the subject's left, pitch > 0 nods it down.
+        textured : bool
+            False shows plain clay.
+        camera : Camera, optional
+            Instead of a camera that frames the head; ``yaw`` and ``pitch`` are then not used.
+
+        Returns
+        -------
+        (size, size, 3) uint8 RGB
+
+        Raises
+        ------
+        ValueError
+            For weights as :meth:`vertices`; if the size is not positive.
+        """
+        camera = camera or self._camera(size, yaw, pitch)
+        surfaces = self.surfaces(weights)
+        if not textured:
+            return render_mesh(surfaces, camera, size, shading="clay")
+        # The texture holds the light of the picture already: a soft light shows the shape without shading it twice.
+        return render_mesh(surfaces, camera, size, light=_soft_light())
+
+    def save(self, path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> None:
+        """Write a file by its suffix, or what a format names.
+
+        ================  ================================================================================
+        ``.glb``          options ``crop quantize normals texture animation names sparse loadable``
+        ``.vrm``          VRM 1.0 with a body of bones alone; ``crop normals texture meta``
+        ``.html``         a page with sliders that needs no network; ``crop quantize texture animation title``
+        ``.usdz``         with blend shapes, needs the extra ``usd``; ``crop names``
+        ``.obj``          with ``.mtl`` and ``.png`` beside it; ``crop``
+        ``.ply``          with uv, and colours at the vertices; ``crop``
+        ``obj-sequence``  a folder with an ``.obj`` an expression; ``crop names``
+        ================  ================================================================================
+
+        Parameters
+        ----------
+        path
+            File to write, or folder.
+        format : optional
+            One of the names above, in place of the suffix.
+        crop : {"head", "bust", "face"}
+            "head" and "bust" are all that the template has; "face" is the front of the face with eyes and teeth.
+        quantize : bool
+            Displacements as integers: half the size, expressions off by less than 0.1 mm. A page does so by default.
+        normals : bool
+            Whether expressions bend the normals too: smoother shading in viewers that do not compute them, and a file
+            half as big again.
+        texture : {"png", "jpeg", None}
+            None: each part in its mean colour.
+        animation : "demo", None, or a pair of times (f,) in s and weights (f, 46) or (f, 54)
+        names : {"toongeo", "arkit", "talkinghead"}
+            Of the targets: the rig's 46 and 8 directions of gaze; exactly the 52 of ARKit; or what players look for
+            that speak by Oculus visemes, such as TalkingHead: those 52, 15 ``viseme_*``, ``mouthOpen``,
+            ``mouthSmile``, ``eyesClosed``, ``eyesLookUp`` and ``eyesLookDown``, in meshes ``Wolf3D_Head``,
+            ``Wolf3D_Teeth``, ... below a node ``Armature``, which has no bones.
+        sparse : bool
+            False: every target stores every vertex, for readers that know no sparse accessors.
+        loadable : bool
+            Whether :func:`toongeo.load_avatar` can read the file back. It then holds the fit and how the picture was
+            parsed (some hundred kB). A file with another crop or other names never is.
+        meta : toongeo.io.VrmMeta
+            Name, authors and licence; by default nothing is allowed to others.
+        title : str
+            Of the page; by default the file's name without its suffix.
+
+        Raises
+        ------
+        ValueError
+            If the suffix or the format is unknown, or has no such option, or the option no such value; if a field of
+            the avatar is of a kind that a loadable file cannot hold.
+        ImportError
+            If ``.usdz`` is asked for without the extra.
+        OSError
+            If a file cannot be written; nothing half-written is left.
+        """
+        save_avatar(Path(path), self, format, options)
+
+    def _camera(self, size: int, yaw: float, pitch: float) -> ScaledOrthographicCamera:
+        skin = self.rig.neutral[self.face.region("skin")]
+        low, high = skin.min(0), skin.max(0)
+        return ScaledOrthographicCamera.look(
+            yaw, pitch, size=size, centre=(low + high) / 2, extent=HEADROOM * (high - low).max()
+        )
+
+
+def _soft_light() -> np.ndarray:
+    """Half the relief of the studio light, and as bright towards the viewer."""
+    light = studio_light()
+    front = irradiance(np.array([[0.0, 0.0, 1.0]]), light)[0]
+    light[1:] *= 0.5
+    return light * (front / irradiance(np.array([[0.0, 0.0, 1.0]]), light)[0])

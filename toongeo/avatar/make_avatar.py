@@ -1,0 +1,188 @@
+"""Every stage in order: one picture and its landmarks in, an avatar out."""
+
+import dataclasses
+import time
+from collections.abc import Callable, Mapping
+from typing import Literal
+
+import numpy as np
+
+from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.report import AvatarReport, landmark_errors, shape_warnings
+from toongeo.caricature import caricature_rig
+from toongeo.caricature.align_caricature import align_caricature
+from toongeo.io import check_image
+from toongeo.metrics import mesh_quality
+from toongeo.model import MorphableModel, default_model
+from toongeo.pipeline import (
+    AlignedFace,
+    FaceFit,
+    Rig,
+    aim_eyes,
+    align_face,
+    bake_eyes,
+    bake_texture,
+    build_rig,
+    find_irises,
+    fit_3dmm,
+    fit_lids,
+    fit_mouth,
+    neutral_face,
+    parse_face,
+    photometric_fit,
+    snap_eyes,
+)
+from toongeo.pipeline.rig.fit_pose import fit_pose
+from toongeo.pipeline.texture.bake_texture import check_size
+from toongeo.protocols import FaceParser
+
+STAGES = ("fit", "parse", "align", "rig", "eyes", "texture", "report")
+ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
+    "cartoon": align_face,
+    "caricature": align_caricature,
+}
+
+
+def make_avatar(
+    img: np.ndarray,
+    landmarks: np.ndarray,
+    *,
+    model: MorphableModel | None = None,
+    parser: FaceParser | None = None,
+    snap: bool = False,
+    photometric: bool = False,
+    neutral: bool = True,
+    gain: float | Literal["auto"] = 1.0,
+    method: Literal["cartoon", "caricature"] = "cartoon",
+    rig: Literal["transfer", "caricature"] = "transfer",
+    texture_size: int = 1024,
+    progress: Callable[[str], None] | None = None,
+) -> Avatar:
+    """A textured, rigged, animatable 3D face from one picture (the whole way of Pan et al. 2024).
+
+    Parameters
+    ----------
+    img : (H, W, 3) uint8 RGB
+    landmarks : (68, 2) float, px
+        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
+    model : MorphableModel, optional
+        :func:`toongeo.default_model` unless another is given.
+    parser : FaceParser, optional
+        Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
+    snap : bool
+        Move eye landmarks to the lids that the parser found (:func:`toongeo.snap_eyes`), and fit again. For points of a
+        detector, which shrinks and shifts the eyes of drawings; points that were set by hand are better left alone.
+    photometric : bool
+        Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
+    neutral : bool
+        Take a clear expression of the mouth out of the face (:func:`toongeo.neutral_face`): ``avatar.vertices()`` is
+        then at rest, ``avatar.vertices(avatar.pose)`` as in the picture. False: the face is taken for neutral as
+        it is drawn.
+    gain : float or "auto"
+        Strength of the transferred expressions; see :func:`toongeo.build_rig`.
+    method : {"cartoon", "caricature"}
+        How the fitted face comes to its landmarks: by :func:`toongeo.align_face`, or in the deformation space of
+        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``.
+    rig : {"transfer", "caricature"}
+        Where the expressions come from: the template's, by deformation transfer, or the drawing's own, reconstructed
+        from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
+    texture_size : int
+        Side of the texture atlas in texels.
+    progress : callable, optional
+        Called with the name of each stage before it starts: one of ``STAGES``.
+
+    Returns
+    -------
+    Avatar
+        What each stage gave is kept in it: ``fit``, ``parse``, ``face``, ``rig``, ``eyes``, ``texture``, ``report``.
+
+    Raises
+    ------
+    ValueError
+        If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, or method or rig is unknown.
+    """
+    align = ALIGNERS.get(method)
+    if align is None:
+        raise ValueError(f"method: expected one of {', '.join(ALIGNERS)}, got {method!r}")
+    check_image(img)
+    check_size(texture_size)
+    if rig not in ("transfer", "caricature"):
+        raise ValueError(f"rig: expected 'transfer' or 'caricature', got {rig!r}")
+    clock = _Clock(progress)
+
+    clock.start("fit")
+    model = model or default_model()
+    fit = fit_3dmm(img, landmarks, model=model)
+    clock.start("parse")
+    parse = parse_face(img, landmarks, fit, parser=parser)
+    if snap:
+        clock.start("fit")
+        landmarks = snap_eyes(landmarks, parse)
+        fit = fit_3dmm(img, landmarks, model=model)
+    if photometric:
+        clock.start("fit")
+        fit = photometric_fit(img, fit, landmarks)
+    clock.start("align")
+    face = align(fit, landmarks)
+    clock.start("rig")
+    at_rest, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
+    clock.start("eyes")
+    shapes, eyes = fit_lids(at_rest, shapes)
+    # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
+    face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - at_rest.vertices))
+    shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
+    clock.start("texture")
+    irises = find_irises(img, landmarks)
+    eyes = aim_eyes(face, eyes, irises)
+    texture = bake_texture(img, face, rig=shapes, size=texture_size, parse=parse)
+    texture = bake_eyes(img, face, eyes, texture, irises)
+    clock.start("report")
+    quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
+    report = AvatarReport(
+        coarse=landmark_errors(fit, landmarks),
+        aligned=landmark_errors(face, landmarks),
+        quality=quality,
+        seconds=clock.stop(),
+        warnings=(*fit.report.warnings, *shape_warnings(face, eyes, quality)),
+    )
+    return Avatar(fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report)
+
+
+def _rigged(
+    face: AlignedFace,
+    landmarks: np.ndarray,
+    rig: Literal["transfer", "caricature"],
+    *,
+    neutral: bool,
+    gain: float | Literal["auto"],
+) -> tuple[AlignedFace, Rig]:
+    """The face at rest, and its expressions with the contacts of the mouth."""
+    if rig == "caricature":
+        shapes = caricature_rig(face, landmarks)
+        at_rest = dataclasses.replace(face, vertices=shapes.neutral)
+    else:
+        at_rest = neutral_face(face) if neutral else face
+        shapes = build_rig(at_rest, gain=gain)
+    return at_rest, fit_mouth(at_rest, shapes)
+
+
+class _Clock:
+    """Seconds a stage, and a word to the caller before each."""
+
+    def __init__(self, progress: Callable[[str], None] | None) -> None:
+        self._progress = progress
+        self._seconds: dict[str, float] = {}
+        self._running: tuple[str, float] | None = None
+
+    def start(self, stage: str) -> None:
+        self.stop()
+        if self._progress:
+            self._progress(stage)
+        self._running = (stage, time.perf_counter())
+
+    def stop(self) -> dict[str, float]:
+        if self._running:
+            stage, started = self._running
+            self._seconds[stage] = self._seconds.get(stage, 0.0) + time.perf_counter() - started
+            self._running = None
+        return self._seconds

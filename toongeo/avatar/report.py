@@ -1,0 +1,68 @@
+"""How well an avatar came out."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from toongeo.metrics import MeshQuality, landmark_error
+from toongeo.model.anatomy.parts import SIDES
+from toongeo.model.ibug68 import OUTER_EYES
+from toongeo.pipeline import AlignedFace, Eyes, FaceFit
+
+FEW_INTERSECTIONS = 0.003  # of the triangles of the face; more are worth a warning
+
+
+@dataclass(frozen=True, eq=False)
+class AvatarReport:
+    """Figures of one avatar.
+
+    Attributes
+    ----------
+    coarse, aligned : part -> RMS
+        Landmark error of the fitted and of the aligned face by part, as a fraction of the outer-eye distance.
+    quality : MeshQuality
+        Of the triangles of the region ``face`` among themselves.
+    seconds : stage -> float
+    warnings : tuple of sentences
+    """
+
+    coarse: dict[str, float]
+    aligned: dict[str, float]
+    quality: MeshQuality
+    seconds: dict[str, float]
+    warnings: tuple[str, ...]
+
+    def lines(self) -> list[str]:
+        """The report in short lines of text."""
+        errors = [f"{part:<9}{100 * self.coarse[part]:7.2f} %{100 * self.aligned[part]:8.3f} %" for part in self.coarse]
+        quality, total = self.quality, sum(self.seconds.values())
+        stages = [f"{stage:<9}{seconds:7.2f} s" for stage, seconds in self.seconds.items()]
+        return [
+            "landmark error, RMS / outer-eye distance",
+            "part        coarse   aligned",
+            *errors,
+            f"self-intersecting: {len(quality.intersecting)} of {quality.selected} triangles of the face",
+            *stages,
+            f"{'in all':<9}{total:7.2f} s",
+            *(f"warning: {warning}" for warning in self.warnings),
+        ]
+
+
+def landmark_errors(face: FaceFit | AlignedFace, landmarks: np.ndarray) -> dict[str, float]:
+    """Landmark error by part / outer-eye distance (that of the face where an outer corner is missing)."""
+    found = face.project(face.vertices[face.landmark_vertices])
+    right, left = np.where(np.isfinite(landmarks), landmarks, found)[list(OUTER_EYES)]
+    return landmark_error(found, landmarks, scale=float(np.linalg.norm(left - right)))
+
+
+def shape_warnings(face: AlignedFace, eyes: Eyes, quality: MeshQuality) -> list[str]:
+    """What seems wrong with the shape of a face."""
+    warnings = []
+    if quality.intersecting_fraction > FEW_INTERSECTIONS:
+        warnings.append(f"{100 * quality.intersecting_fraction:.1f} % of the face's triangles intersect others")
+    for side, name in enumerate(SIDES):
+        skin = face.region("skin") & ~face.region(f"eye_{name}")
+        inside = np.linalg.norm(face.vertices[skin] - eyes.centres[side], axis=1) < eyes.radii[side]
+        if inside.any():
+            warnings.append(f"the {name} eyeball reaches through the skin ({inside.sum()} vertices)")
+    return warnings

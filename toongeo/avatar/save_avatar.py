@@ -1,0 +1,236 @@
+"""The files an avatar can be saved as."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from toongeo.avatar.crop_faces import Crop
+from toongeo.avatar.export_targets import PLAYER_MESHES, PLAYER_ROOT, Names, export_targets, renamed_scene
+from toongeo.avatar.scene import avatar_scene, demo_clip, weight_clip
+from toongeo.avatar.stages import AvatarStages
+from toongeo.avatar.state import encode_state
+from toongeo.io import (
+    Scene,
+    SceneAnimation,
+    VrmMeta,
+    atomic_write,
+    encode_glb,
+    page_html,
+    split_seams,
+    write_glb,
+    write_obj,
+    write_obj_sequence,
+    write_ply,
+    write_usdz,
+    write_vrm,
+)
+from toongeo.io.writers.write_usdz import usd_modules
+from toongeo.model.expression_schemes import PRESETS, SCHEMES
+from toongeo.pipeline import Rig
+from toongeo.render import sample_image, uv_to_px
+
+Weights = Mapping[str, float]
+Texture = Literal["png", "jpeg"] | None
+Animation = Literal["demo"] | None | tuple[Any, Any]
+EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
+COARSE_MM = 0.04  # the same for a quantized file: a fifth of a pixel where a head is a thousand high
+COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
+
+
+def save_avatar(path: Path, avatar: AvatarStages, kind: str | None, options: Mapping[str, Any]) -> None:
+    """What :meth:`toongeo.Avatar.save` does."""
+    writer_for(path, kind, options)(path, avatar, **options)
+
+
+def writer_for(path: Path, kind: str | None, options: Mapping[str, Any]) -> Callable[..., None]:
+    """The writer of a format, or of a suffix if that is None; errors as of :meth:`toongeo.Avatar.save`."""
+    suffix = path.suffix.lower() if kind is None else kind
+    writer = WRITERS.get(suffix)
+    if writer is None and kind is None:
+        raise ValueError(f"path: expected a name that ends in {', '.join(SUFFIXES)}, got {path}")
+    if writer is None:
+        raise ValueError(f"format: expected one of {', '.join(WRITERS)}, got {kind!r}")
+    known = list(inspect.signature(writer).parameters)[2:]
+    for name in options:
+        if name not in known:
+            raise ValueError(f"{name}: no option of {suffix}, which has {', '.join(known)}")
+    if suffix == ".usdz":
+        usd_modules()
+    return writer
+
+
+def _write_glb(
+    path: Path,
+    avatar: AvatarStages,
+    *,
+    crop: Crop = "head",
+    quantize: bool = False,
+    normals: bool = False,
+    texture: Texture = "png",
+    animation: Animation = "demo",
+    names: Names = "toongeo",
+    sparse: bool = True,
+    loadable: bool = True,
+) -> None:
+    scene = avatar_scene(
+        avatar,
+        crop=crop,
+        shapes=export_targets(names),
+        animation=_animation(avatar.rig, animation),
+        textured=_check_texture(texture) is not None,
+    )
+    player = names == "talkinghead"
+    if player:
+        scene = renamed_scene(scene, PLAYER_MESHES)
+    whole = crop != "face" and names == "toongeo"  # else the file has not all that is needed
+    write_glb(
+        path,
+        scene,
+        normal_deltas=normals,
+        tolerance_mm=COARSE_MM if quantize else EXACT_MM,
+        quantize=quantize,
+        picture=texture or "png",
+        sparse=sparse,
+        root=PLAYER_ROOT if player else None,
+        attachment=avatar_attachment(avatar, coarse=quantize) if loadable and whole else None,
+    )
+
+
+def _write_vrm(
+    path: Path,
+    avatar: AvatarStages,
+    *,
+    crop: Crop = "head",
+    normals: bool = False,
+    texture: Texture = "png",
+    meta: VrmMeta | None = None,
+) -> None:
+    scene = avatar_scene(avatar, crop=crop, textured=_check_texture(texture) is not None)
+    # Bones turn the eyes, which therefore need no targets; the lids that follow are the head's.
+    still = (replace(m, targets=None, target_names=()) if m.name.startswith("eye_") else m for m in scene.meshes)
+    # One range for both eyes: that of the eye whose iris would leave its opening first.
+    sideways, updown = avatar.eyes.turn.min(0).tolist()
+    write_vrm(
+        path,
+        Scene(tuple(still)),
+        {**SCHEMES["vrm"], **SCHEMES["arkit"]},
+        meta=meta,
+        gaze_degrees=(sideways, updown),
+        normal_deltas=normals,
+        tolerance_mm=EXACT_MM,
+        picture=texture or "png",
+    )
+
+
+def avatar_attachment(avatar: AvatarStages, *, coarse: bool) -> bytes:
+    """All of an avatar that its meshes and its texture do not tell."""
+    parse = avatar.parse
+    if coarse:
+        steps = np.float32(COARSE_STEPS)
+        parse = replace(parse, confidence=np.rint(parse.confidence * steps) / steps)
+    # The camera's picture is known to the reader as the file's image, the rig's arrays as its meshes.
+    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name != "texture"}
+    return encode_state({**state, "parse": parse}, rig_arrays(avatar.rig), avatar.face.model)
+
+
+def rig_arrays(rig: Rig) -> dict[str, np.ndarray]:
+    """The arrays of a rig that the meshes of a GLB hold."""
+    return {"neutral": rig.neutral, "deltas": rig.deltas, "gaze": rig.gaze}
+
+
+def _animation(rig: Rig, animation: Animation) -> SceneAnimation | None:
+    if animation is None:
+        return None
+    if isinstance(animation, tuple) and len(animation) == 2:
+        return weight_clip(rig, *animation)
+    if isinstance(animation, str) and animation == "demo":
+        return demo_clip(rig)
+    raise ValueError(f"animation: expected 'demo', None or a pair of times and weights, got {animation!r}")
+
+
+def _check_texture(texture: Texture) -> Texture:
+    if texture not in ("png", "jpeg", None):
+        raise ValueError(f"texture: expected 'png', 'jpeg' or None, got {texture!r}")
+    return texture
+
+
+def _write_obj(path: Path, avatar: AvatarStages, *, crop: Crop = "head") -> None:
+    write_obj(path, avatar_scene(avatar, crop=crop, split=False))
+
+
+def _write_obj_sequence(path: Path, avatar: AvatarStages, *, crop: Crop = "head", names: Names = "toongeo") -> None:
+    shapes = export_targets(names)
+    write_obj_sequence(path, avatar_scene(avatar, crop=crop, shapes=shapes, split=False))
+
+
+def _write_ply(path: Path, avatar: AvatarStages, *, crop: Crop = "head") -> None:
+    """Neutral head and eyeballs in one mesh, with uv and the texture's colours at the vertices.
+
+    Vertices keep their order; those on seams, which have several uv, come again at the end.
+    """
+    meshes = avatar_scene(avatar, crop=crop, split=False).meshes
+    points = _joined([(mesh.vertices, mesh.faces) for mesh in meshes])
+    uvs = _joined([(mesh.uv, mesh.uv_faces) for mesh in meshes])
+    vertex, corner, split = split_seams(points[1], uvs[1])
+    again = np.r_[False, vertex[1:] == vertex[:-1]]
+    order = np.argsort(again, kind="stable")
+    uv = uvs[0][corner[order]]
+    colours = np.rint(sample_image(avatar.texture, uv_to_px(uv, *avatar.texture.shape[:2]))).astype(np.uint8)
+    write_ply(path, points[0][vertex[order]], np.argsort(order)[split], colours, uv)
+
+
+def _joined(parts: list[tuple[Any, Any]]) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of all parts, and indices into them."""
+    offsets = np.cumsum([0, *(len(rows) for rows, _ in parts)])
+    indices = [index + offset for (_, index), offset in zip(parts, offsets, strict=False)]
+    return np.vstack([rows for rows, _ in parts]), np.vstack(indices)
+
+
+def _write_usdz(path: Path, avatar: AvatarStages, *, crop: Crop = "head", names: Names = "toongeo") -> None:
+    shapes = export_targets(names)
+    write_usdz(path, avatar_scene(avatar, crop=crop, shapes=shapes), tolerance_mm=EXACT_MM)
+
+
+def _write_html(
+    path: Path,
+    avatar: AvatarStages,
+    *,
+    crop: Crop = "head",
+    quantize: bool = True,
+    texture: Texture = "png",
+    animation: Animation = "demo",
+    title: str | None = None,
+) -> None:
+    scene = avatar_scene(
+        avatar,
+        crop=crop,
+        animation=_animation(avatar.rig, animation),
+        textured=_check_texture(texture) is not None,
+    )
+    tolerance = COARSE_MM if quantize else EXACT_MM
+    glb = encode_glb(scene, tolerance_mm=tolerance, quantize=quantize, picture=texture or "png")
+    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets())
+    atomic_write({path: page.encode("utf-8")})
+
+
+def page_presets() -> dict[str, Weights]:
+    """Whole expressions for the buttons of a page: no shapes of speech, no parts of faces."""
+    return {name: dict(weights) for name, weights in PRESETS.items() if weights and not name.startswith("viseme_")}
+
+
+WRITERS: dict[str, Callable[..., None]] = {
+    ".glb": _write_glb,
+    ".obj": _write_obj,
+    ".ply": _write_ply,
+    ".vrm": _write_vrm,
+    ".usdz": _write_usdz,
+    ".html": _write_html,
+    "obj-sequence": _write_obj_sequence,
+}
+SUFFIXES = tuple(name for name in WRITERS if name.startswith("."))

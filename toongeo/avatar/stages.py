@@ -1,0 +1,40 @@
+"""What the stages gave for one avatar."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from toongeo._read_only import read_only
+from toongeo.avatar.report import AvatarReport
+from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
+from toongeo.protocols import FaceParse
+
+__all__ = ["AvatarStages"]
+
+
+@dataclass(frozen=True, eq=False)
+class AvatarStages:
+    """The results of all stages: what writers of files need of an avatar.
+
+    Attributes
+    ----------
+    fit : FaceFit
+    parse : FaceParse
+    face : AlignedFace
+    rig : Rig
+        ``rig.names`` are the 46 expressions, ``rig.deltas`` (46, n, 3) their blendshapes.
+    eyes : Eyes
+    texture : (size, size, 3) uint8 RGB
+    report : AvatarReport
+    """
+
+    fit: FaceFit
+    parse: FaceParse
+    face: AlignedFace
+    rig: Rig
+    eyes: Eyes
+    texture: np.ndarray
+    report: AvatarReport
+
+    def __post_init__(self) -> None:
+        read_only(self, "texture")

@@ -1,0 +1,1 @@
+"""Expressions of caricatures (Chen et al. 2020)."""

@@ -1,0 +1,1 @@
+"""The deformation space that extrapolates (Wu et al. 2018)."""

@@ -1,0 +1,5 @@
+"""The same picture with another expression."""
+
+from toongeo._lazy import attach
+
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

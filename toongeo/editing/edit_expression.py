@@ -1,0 +1,70 @@
+"""The same picture with another expression."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from toongeo.editing.expression_editor import ExpressionEditor
+from toongeo.model import MorphableModel
+from toongeo.pipeline import fit_3dmm
+from toongeo.protocols import TextureGenerator
+
+
+def edit_expression(
+    img: np.ndarray,
+    landmarks: np.ndarray,
+    weights: Mapping[str, float] | np.ndarray | None = None,
+    *,
+    reference: tuple[np.ndarray | None, np.ndarray] | None = None,
+    generator: TextureGenerator | None = None,
+) -> np.ndarray:
+    """Change the expression of a picture or drawing, and nothing else of it (Chen et al. 2020, section 4.4).
+
+    Parameters
+    ----------
+    img : (H, W, 3) uint8 RGB
+    landmarks : (68, 2) float, px
+        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
+    weights : mapping of name to weight, (46,) array or (54,) array
+        The expression of the result. 1 is the full expression; names that are left out are 0.
+    reference : (picture or None, landmarks), optional
+        Instead of weights: a normal face whose expression is taken over.
+    generator : TextureGenerator, optional
+        What makes the new texture; :class:`toongeo.ClassicalTextureGenerator` unless another is given.
+
+    Returns
+    -------
+    (H, W, 3) uint8 RGB
+        For many expressions of one picture, :class:`toongeo.ExpressionEditor` fits it only once.
+
+    Raises
+    ------
+    ValueError
+        If neither or both of weights and reference are given, no face can be fitted to the reference, a name is
+        unknown (the nearest are suggested), or for pictures and landmarks as :func:`toongeo.make_avatar`.
+    """
+    if (weights is None) == (reference is None):
+        raise ValueError("weights, reference: expected one of them, got " + ("neither" if weights is None else "both"))
+    wanted = weights if reference is None else reference_weights(reference)
+    return ExpressionEditor(img, landmarks, generator=generator).frame(wanted)
+
+
+def reference_weights(
+    reference: tuple[np.ndarray | None, np.ndarray], model: MorphableModel | None = None
+) -> dict[str, float]:
+    """Named expression weights of a normal face, given as picture (or None) and landmarks.
+
+    Raises
+    ------
+    ValueError
+        If no face can be fitted to it.
+    """
+    try:
+        img, landmarks = reference
+    except (TypeError, ValueError):
+        raise ValueError(f"reference: expected a picture and its landmarks, got {type(reference).__name__}") from None
+    try:
+        fit = fit_3dmm(img, landmarks, model=model)
+    except ValueError as error:
+        raise ValueError(f"reference: no face could be fitted ({error})") from error
+    return fit.expression_weights()

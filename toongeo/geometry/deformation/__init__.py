@@ -1,0 +1,1 @@
+"""Parts of Laplacian alignment and deformation transfer."""

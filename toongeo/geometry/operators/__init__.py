@@ -1,0 +1,1 @@
+"""Sparse operators on meshes, and what they are made of."""

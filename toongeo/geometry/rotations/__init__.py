@@ -1,0 +1,1 @@
+"""Rotations, and the least-squares alignment of points."""

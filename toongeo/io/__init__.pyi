@@ -1,0 +1,30 @@
+"""The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
+
+from toongeo.io.atomic_write import atomic_write as atomic_write
+from toongeo.io.check_image import check_image as check_image
+from toongeo.io.check_landmarks import check_landmarks as check_landmarks
+from toongeo.io.encode_glb import encode_glb as encode_glb
+from toongeo.io.encode_image import encode_image as encode_image
+from toongeo.io.glb_scene import glb_scene as glb_scene
+from toongeo.io.landmark_array import landmark_array as landmark_array
+from toongeo.io.page_html import page_html as page_html
+from toongeo.io.readers.read_glb import GlbDocument as GlbDocument
+from toongeo.io.readers.read_glb import read_glb as read_glb
+from toongeo.io.readers.read_image import read_image as read_image
+from toongeo.io.readers.read_landmarks import read_landmarks as read_landmarks
+from toongeo.io.readers.read_mesh_landmarks import read_mesh_landmarks as read_mesh_landmarks
+from toongeo.io.readers.read_obj import ObjData as ObjData
+from toongeo.io.readers.read_obj import read_obj as read_obj
+from toongeo.io.scene import Scene as Scene
+from toongeo.io.scene import SceneAnimation as SceneAnimation
+from toongeo.io.scene import SceneMesh as SceneMesh
+from toongeo.io.split_seams import split_seams as split_seams
+from toongeo.io.writers.vrm_meta import VrmMeta as VrmMeta
+from toongeo.io.writers.write_glb import write_glb as write_glb
+from toongeo.io.writers.write_image import write_image as write_image
+from toongeo.io.writers.write_landmarks import write_landmarks as write_landmarks
+from toongeo.io.writers.write_obj import write_obj as write_obj
+from toongeo.io.writers.write_obj_sequence import write_obj_sequence as write_obj_sequence
+from toongeo.io.writers.write_ply import write_ply as write_ply
+from toongeo.io.writers.write_usdz import write_usdz as write_usdz
+from toongeo.io.writers.write_vrm import write_vrm as write_vrm

@@ -1,0 +1,162 @@
+"""The meshes, materials and animation of a scene as entries of a GLB."""
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo.geometry.operators.vertex_normals import vertex_normals
+from toongeo.io.encode_image import encode_image
+from toongeo.io.gltf.glb_builder import INDICES, VERTICES, GlbBuilder
+from toongeo.io.gltf.glb_targets import add_targets
+from toongeo.io.scene import METRES, Scene, SceneAnimation, SceneMesh
+from toongeo.io.split_seams import split_seams
+
+Picture = Literal["png", "jpeg"]
+
+STEPS = 2048  # of the greatest coordinate, as which displacements are quantized: 0.09 mm of a head
+BYTE = 127  # what 1 is as a normalized integer of 8 bits
+# Below this a change of a normal cannot be seen: 0.06 degrees.
+_NORMAL_TOLERANCE = 1e-3
+_SAMPLER = {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}  # trilinear, clamped
+
+
+@dataclass(frozen=True)
+class GlbOptions:
+    """Of :func:`encode_glb`."""
+
+    normal_deltas: bool = False
+    tolerance_mm: float = 1e-3
+    quantize: bool = False
+    picture: Picture = "png"
+    sparse: bool = True
+    root: str | None = None
+
+
+def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
+    """Add everything; meshes and nodes get the numbers that the meshes have in the scene."""
+    textures: dict[bytes, int] = {}
+    if options.quantize:
+        builder.use("KHR_mesh_quantization", required=True)
+    for mesh in scene.meshes:
+        unit = _unit(mesh) if options.quantize else None
+        primitive = _primitive(builder, mesh, options, unit)
+        primitive["material"] = _material(builder, mesh, textures, options.picture)
+        k = len(mesh.target_names)
+        index = builder.add(
+            "meshes",
+            name=mesh.name,
+            primitives=[primitive],
+            weights=[0.0] * k if k else None,
+            extras={"targetNames": list(mesh.target_names)} if k else None,
+        )
+        pivot = None if mesh.pivot is None else (mesh.pivot * METRES).tolist()
+        size = None if unit is None else [unit * METRES] * 3
+        builder.add("nodes", name=mesh.name, mesh=index, translation=pivot, scale=size)
+    nodes = list(range(len(scene.meshes)))
+    if options.root is not None:
+        nodes = [builder.add("nodes", name=options.root, children=nodes)]
+    builder.json["scenes"] = [{"nodes": nodes}]
+    builder.json["scene"] = 0
+    if scene.animation is not None:
+        _animate(builder, scene.animation, [mesh.name for mesh in scene.meshes])
+
+
+def _local(mesh: SceneMesh) -> NDArray[np.floating]:
+    return mesh.vertices if mesh.pivot is None else mesh.vertices - mesh.pivot
+
+
+def _unit(mesh: SceneMesh) -> float:
+    """mm that 1 is as an integer: small, so that none suffers, and so great that most displacements fit a byte."""
+    local, targets = np.abs(_local(mesh)).max(), np.zeros(1) if mesh.targets is None else np.abs(mesh.targets)
+    return float(max(local / STEPS, targets.max(initial=0) / np.iinfo(np.int16).max)) or 1.0
+
+
+def _primitive(builder: GlbBuilder, mesh: SceneMesh, options: GlbOptions, unit: float | None) -> dict[str, Any]:
+    uv_faces = mesh.faces if mesh.uv_faces is None else mesh.uv_faces
+    vertex, uv, faces = split_seams(mesh.faces, uv_faces)
+    base = _normals(mesh.vertices, mesh.faces)
+    normals = base if mesh.normals is None else mesh.normals
+    whole, scale = unit is not None, METRES if unit is None else 1 / unit
+    attributes = {
+        "POSITION": builder.accessor(_f4(_local(mesh)[vertex] * scale), VERTICES, bounds=True),
+        "NORMAL": builder.accessor(_normal(normals[vertex], whole), VERTICES, normalized=whole),
+    }
+    if mesh.uv is not None:
+        # glTF's uv origin is the upper left corner.
+        coordinates = mesh.uv[uv] * [1, -1] + [0, 1]
+        small = whole and coordinates.min() >= 0 and coordinates.max() <= 1
+        stored = np.rint(coordinates * 65535).astype("<u2") if small else _f4(coordinates)
+        attributes["TEXCOORD_0"] = builder.accessor(stored, VERTICES, normalized=small)
+    index_type = "<u2" if len(vertex) <= 65535 else "<u4"  # 65535 itself would restart the primitive
+    primitive: dict[str, Any] = {
+        "attributes": attributes,
+        "indices": builder.accessor(faces.astype(index_type).ravel(), INDICES),
+    }
+    if mesh.target_names and mesh.targets is not None:
+        tolerance = options.tolerance_mm * scale
+        moved = mesh.targets[:, vertex] * scale
+        moved = np.rint(moved).astype("<i2") if whole else _f4(moved)
+        targets = [{"POSITION": i} for i in add_targets(builder, moved, tolerance, options.sparse, bounds=True)]
+        if options.normal_deltas:
+            turned = [(_normals(mesh.vertices + delta, mesh.faces) - base)[vertex] for delta in mesh.targets]
+            stored = _normal(np.stack(turned), whole)
+            tolerance = _NORMAL_TOLERANCE * (BYTE if whole else 1)
+            turns = add_targets(builder, stored, tolerance, options.sparse, normalized=whole)
+            for entry, i in zip(targets, turns, strict=True):
+                entry["NORMAL"] = i
+        primitive["targets"] = targets
+    return primitive
+
+
+def _normal(array: NDArray[np.floating], whole: bool) -> NDArray:
+    return np.rint(np.clip(array, -1, 1) * BYTE).astype("<i1") if whole else _f4(array)
+
+
+def _normals(V: NDArray[np.floating], F: NDArray[np.integer]) -> NDArray[np.float64]:
+    """(n, 3), all of unit length as the format demands: +Z where the faces give none."""
+    normals = vertex_normals(V, F)
+    return np.where(normals.any(axis=1, keepdims=True), normals, [0.0, 0.0, 1.0])
+
+
+def _material(builder: GlbBuilder, mesh: SceneMesh, textures: dict[bytes, int], picture: Picture) -> int:
+    srgb = np.array(mesh.color)
+    # Factors are linear light (IEC 61966-2-1), textures are sRGB.
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    look: dict[str, Any] = {
+        "baseColorFactor": [*linear.tolist(), 1.0],
+        "metallicFactor": 0.0,
+        "roughnessFactor": float(mesh.roughness),
+    }
+    if mesh.texture is not None:
+        look["baseColorTexture"] = {"index": _texture(builder, mesh.texture, textures, picture)}
+    return builder.add("materials", name=mesh.name, pbrMetallicRoughness=look)
+
+
+def _texture(builder: GlbBuilder, pixels: NDArray[np.uint8], textures: dict[bytes, int], picture: Picture) -> int:
+    key = str(pixels.shape).encode() + pixels.tobytes()
+    if key not in textures:
+        if not textures:
+            builder.add("samplers", **_SAMPLER)
+        view = builder.view(encode_image(pixels, f".{picture}"))
+        image = builder.add("images", bufferView=view, mimeType=f"image/{picture}")
+        textures[key] = builder.add("textures", source=image, sampler=0)
+    return textures[key]
+
+
+def _animate(builder: GlbBuilder, animation: SceneAnimation, names: list[str]) -> None:
+    times = builder.accessor(_f4(animation.times), bounds=True)
+    samplers: list[dict[str, Any]] = []
+    channels: list[dict[str, Any]] = []
+    outputs = [(name, "weights", _f4(values).ravel()) for name, values in animation.weights.items()]
+    outputs += [(name, "rotation", _f4(values)) for name, values in animation.rotations.items()]
+    for name, path, values in outputs:
+        channels.append({"sampler": len(samplers), "target": {"node": names.index(name), "path": path}})
+        samplers.append({"input": times, "output": builder.accessor(values), "interpolation": "LINEAR"})
+    if channels:
+        builder.add("animations", name=animation.name, samplers=samplers, channels=channels)
+
+
+def _f4(array: ArrayLike) -> NDArray[np.float32]:
+    return np.ascontiguousarray(array, dtype="<f4")

@@ -1,0 +1,1 @@
+"""Writers of files; every one is atomic."""

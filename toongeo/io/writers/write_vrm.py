@@ -1,0 +1,189 @@
+"""A scene of a head as VRM 1.0, with a body of bones alone."""
+
+import csv
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.io.atomic_write import atomic_write
+from toongeo.io.gltf.glb_builder import VERTICES, GlbBuilder
+from toongeo.io.gltf.scene_parts import GlbOptions, Picture, add_scene
+from toongeo.io.scene import METRES, Scene
+from toongeo.io.writers.vrm_meta import VrmMeta
+
+__all__ = ["write_vrm"]
+
+EYES = {"leftEye": ("LeftEye", "eye_left"), "rightEye": ("RightEye", "eye_right")}
+GROUND_MM = 1580.0  # of a standing adult: from the ground to the eyes
+# The names that VRM gives a meaning; all others are the user's own.
+PRESETS = (
+    *(
+        "happy",
+        "angry",
+        "sad",
+        "relaxed",
+        "surprised",
+        "aa",
+        "ih",
+        "ou",
+        "ee",
+        "oh",
+        "blink",
+        "blinkLeft",
+        "blinkRight",
+    ),
+    *("lookUp", "lookDown", "lookLeft", "lookRight", "neutral"),
+)
+
+
+def write_vrm(
+    path: str | os.PathLike[str],
+    scene: Scene,
+    expressions: Mapping[str, Mapping[str, float]],
+    *,
+    meta: VrmMeta | None = None,
+    gaze_degrees: tuple[float, float] = (30.0, 25.0),
+    normal_deltas: bool = False,
+    tolerance_mm: float = 1e-3,
+    picture: Picture = "png",
+) -> None:
+    """Write a ``.vrm``: a GLB with the extension ``VRMC_vrm``; atomically, the same bytes for the same arguments.
+
+    The bones that a humanoid must have are there, in T-pose where those of an adult of 1.7 m are, in metres, the
+    ground at y = 0 and the face along +Z. All meshes are skinned to the head's bone, neck included; ``eye_left`` and
+    ``eye_right`` to bones of their own at their pivots, which turn them.
+
+    Parameters
+    ----------
+    path
+        File to write.
+    scene
+        Model frame, mm. Its animation is left out.
+    expressions : name -> target -> weight
+        By the names of VRM's presets (``happy``, ``aa``, ``blink``, ...), or others, which become custom ones. Every
+        mesh that has a target moves with it.
+    meta
+        Licence; by default nothing is allowed to others.
+    gaze_degrees
+        How far the eyes turn sideways, and up and down, when the goal is at 90 degrees.
+    normal_deltas, tolerance_mm, picture
+        As of :func:`encode_glb`.
+
+    Raises
+    ------
+    ValueError
+        If an expression has a target that no mesh has, or the scene has no eyes with pivots.
+    OSError
+        If the path cannot be written; nothing half-written remains.
+    """
+    names = {mesh.name: number for number, mesh in enumerate(scene.meshes)}
+    for _, eye in EYES.values():
+        if eye not in names or scene.meshes[names[eye]].pivot is None:
+            raise ValueError(f"scene: expected a mesh {eye!r} with a pivot, got {', '.join(names)}")
+    binds = {name: _binds(scene, name, weights) for name, weights in expressions.items()}
+    builder = GlbBuilder()
+    still = Scene(tuple(replace(mesh, pivot=None) for mesh in scene.meshes))  # skins hold the places of bones
+    add_scene(builder, still, GlbOptions(normal_deltas=normal_deltas, tolerance_mm=tolerance_mm, picture=picture))
+    bones = _add_bones(builder, scene)
+    head = _bones()["Head"][2]
+    middle = np.mean([_pivot(scene, eye) for _, eye in EYES.values()], axis=0)
+    builder.use("VRMC_vrm")
+    builder.json["extensions"] = {
+        "VRMC_vrm": {
+            "specVersion": "1.0",
+            "meta": (meta or VrmMeta()).entry(),
+            "humanoid": {"humanBones": {bone: {"node": node} for bone, node in bones.items()}},
+            "expressions": {
+                "preset": {name: entry for name, entry in binds.items() if name in PRESETS},
+                "custom": {name: entry for name, entry in binds.items() if name not in PRESETS},
+            },
+            "lookAt": _look_at((middle - head) * METRES, *gaze_degrees),
+        }
+    }
+    atomic_write({path: builder.encode()})
+
+
+def _binds(scene: Scene, name: str, weights: Mapping[str, float]) -> dict[str, Any]:
+    targets = {target for mesh in scene.meshes for target in mesh.target_names}
+    for target in weights:
+        if target not in targets:
+            raise ValueError(f"expressions: expected targets of the scene in {name!r}, got {target!r}")
+    binds = [
+        {"node": node, "index": mesh.target_names.index(target), "weight": min(float(weight), 1.0)}
+        for node, mesh in enumerate(scene.meshes)
+        for target, weight in weights.items()
+        if target in mesh.target_names
+    ]
+    override = {"isBinary": False, "overrideBlink": "none", "overrideLookAt": "none", "overrideMouth": "none"}
+    return {**({"morphTargetBinds": binds} if binds else {}), **override}
+
+
+def _look_at(offset: NDArray[np.floating], sideways: float, updown: float) -> dict[str, Any]:
+    def reach(degrees: float) -> dict[str, float]:
+        return {"inputMaxValue": 90.0, "outputScale": float(degrees)}
+
+    return {
+        "type": "bone",
+        "offsetFromHeadBone": offset.tolist(),
+        "rangeMapHorizontalInner": reach(sideways),
+        "rangeMapHorizontalOuter": reach(sideways),
+        "rangeMapVerticalDown": reach(updown),
+        "rangeMapVerticalUp": reach(updown),
+    }
+
+
+def _add_bones(builder: GlbBuilder, scene: Scene) -> dict[str, int]:
+    """The bones, and the skin of the meshes, whose nodes are the first; the node of each by VRM's name."""
+    nodes = builder.json["nodes"]
+    places: dict[str, NDArray[np.floating]] = {}
+    by_name, humanoid = {}, {}
+    rows: list[tuple[str, str, str, NDArray[np.floating]]] = [(name, *row) for name, row in _bones().items()]
+    rows += [(name, bone, "Head", _pivot(scene, eye)) for bone, (name, eye) in EYES.items()]
+    for name, bone, parent, place in rows:
+        above = places.get(parent, np.array([0.0, -GROUND_MM, 0.0]))
+        index = builder.add("nodes", name=name, translation=((place - above) * METRES).tolist())
+        places[name], by_name[name], humanoid[bone] = place, index, index
+        if parent:
+            nodes[by_name[parent]].setdefault("children", []).append(index)
+    builder.json["scenes"] = [{"nodes": [*range(len(scene.meshes)), by_name["Hips"]]}]
+    _add_skin(builder, scene, places, by_name)
+    return humanoid
+
+
+def _add_skin(
+    builder: GlbBuilder, scene: Scene, places: dict[str, NDArray[np.floating]], nodes: dict[str, int]
+) -> None:
+    """Every mesh follows one bone: an eyeball that of its eye, all else that of the head."""
+    inverse = np.tile(np.eye(4, dtype="<f4"), (len(places), 1, 1))
+    inverse[:, 3, :3] = -np.array(list(places.values())) * METRES  # a row is a column of the matrix in the file
+    matrices = builder.accessor(inverse.reshape(-1, 16))
+    skin = builder.add("skins", inverseBindMatrices=matrices, joints=[nodes[name] for name in places])
+    hanging = {eye: name for name, eye in EYES.values()}
+    for node, mesh in enumerate(scene.meshes):
+        attributes = builder.json["meshes"][node]["primitives"][0]["attributes"]
+        count = builder.json["accessors"][attributes["POSITION"]]["count"]
+        joints, weights = np.zeros((count, 4), "<u1"), np.zeros((count, 4), "<u1")
+        joints[:, 0], weights[:, 0] = list(places).index(hanging.get(mesh.name, "Head")), 255
+        attributes["JOINTS_0"] = builder.accessor(joints, VERTICES)
+        attributes["WEIGHTS_0"] = builder.accessor(weights, VERTICES, normalized=True)
+        builder.json["nodes"][node]["skin"] = skin
+
+
+def _pivot(scene: Scene, name: str) -> NDArray[np.floating]:
+    (pivot,) = (mesh.pivot for mesh in scene.meshes if mesh.name == name)
+    assert pivot is not None
+    return pivot
+
+
+@cache
+def _bones() -> dict[str, tuple[str, str, NDArray[np.float64]]]:
+    """VRM's name, parent and place (3,), mm, of each bone."""
+    text = files("toongeo.io").joinpath("humanoid_bones.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    return {row["name"]: (row["bone"], row["parent"], np.array([float(row[axis]) for axis in "xyz"])) for row in rows}

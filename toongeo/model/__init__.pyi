@@ -1,0 +1,10 @@
+"""The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
+
+from toongeo.model.data_path import data_path as data_path
+from toongeo.model.default_model import default_model as default_model
+from toongeo.model.expression_weights import expression_weights as expression_weights
+from toongeo.model.expression_weights import preset as preset
+from toongeo.model.eyeball_template import EyeballTemplate as EyeballTemplate
+from toongeo.model.loaders.load_eos import load_eos as load_eos
+from toongeo.model.loaders.load_ict_facekit import load_ict_facekit as load_ict_facekit
+from toongeo.model.morphable_model import MorphableModel as MorphableModel

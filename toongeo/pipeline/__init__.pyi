@@ -1,0 +1,36 @@
+"""The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
+
+from toongeo.pipeline.align import AlignedFace as AlignedFace
+from toongeo.pipeline.align import align_face as align_face
+from toongeo.pipeline.fit import FaceFit as FaceFit
+from toongeo.pipeline.fit import FitOptions as FitOptions
+from toongeo.pipeline.fit import PhotometricOptions as PhotometricOptions
+from toongeo.pipeline.fit import RidgeRegressor as RidgeRegressor
+from toongeo.pipeline.fit import adjust_coefficients as adjust_coefficients
+from toongeo.pipeline.fit import fit_3dmm as fit_3dmm
+from toongeo.pipeline.fit import photometric_fit as photometric_fit
+from toongeo.pipeline.fit import rendered_picture as rendered_picture
+from toongeo.pipeline.fit import residual_map as residual_map
+from toongeo.pipeline.fit import train_ridge_regressor as train_ridge_regressor
+from toongeo.pipeline.parse import ClassicalParser as ClassicalParser
+from toongeo.pipeline.parse import find_hair as find_hair
+from toongeo.pipeline.parse import parse_face as parse_face
+from toongeo.pipeline.parse import snap_eyes as snap_eyes
+from toongeo.pipeline.rig import Animator as Animator
+from toongeo.pipeline.rig import Eyes as Eyes
+from toongeo.pipeline.rig import Rig as Rig
+from toongeo.pipeline.rig import build_rig as build_rig
+from toongeo.pipeline.rig import close_lids as close_lids
+from toongeo.pipeline.rig import fit_eyes as fit_eyes
+from toongeo.pipeline.rig import fit_lids as fit_lids
+from toongeo.pipeline.rig import fit_mouth as fit_mouth
+from toongeo.pipeline.rig import keep_lids_outside as keep_lids_outside
+from toongeo.pipeline.rig import neutral_face as neutral_face
+from toongeo.pipeline.rig import rig_mesh as rig_mesh
+from toongeo.pipeline.texture import Iris as Iris
+from toongeo.pipeline.texture import aim_eyes as aim_eyes
+from toongeo.pipeline.texture import bake_eyes as bake_eyes
+from toongeo.pipeline.texture import bake_texture as bake_texture
+from toongeo.pipeline.texture import diffuse_texture as diffuse_texture
+from toongeo.pipeline.texture import find_irises as find_irises
+from toongeo.pipeline.texture import texture_coordinates as texture_coordinates

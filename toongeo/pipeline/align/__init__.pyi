@@ -1,0 +1,4 @@
+"""The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
+
+from toongeo.pipeline.align.align_face import AlignedFace as AlignedFace
+from toongeo.pipeline.align.align_face import align_face as align_face

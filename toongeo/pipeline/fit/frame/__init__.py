@@ -1,0 +1,1 @@
+"""The frame in which a fit is solved, and its unknowns."""

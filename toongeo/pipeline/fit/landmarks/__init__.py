@@ -1,0 +1,1 @@
+"""Landmarks of a fit: schemes, weights, silhouettes, errors."""

@@ -1,0 +1,51 @@
+"""The loss that is minimised."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.pipeline.fit.losses.landmark_loss import LandmarkLoss
+from toongeo.pipeline.fit.losses.pitch_prior import PitchPrior
+from toongeo.pipeline.fit.losses.prior_loss import PriorLoss
+
+__all__ = ["TotalLoss"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class TotalLoss:
+    """Eq. 3 of Pan et al. 2024 without the photometric term: ``L = w_l L_lan + w_r L_reg + w_n L_nod``."""
+
+    landmark: LandmarkLoss
+    prior: PriorLoss
+    nod: PitchPrior
+    landmark_weight: float
+    prior_weight: float
+    pitch_weight: float
+
+    def __call__(self, x: Floats) -> tuple[float, Floats]:
+        """Value and gradient (n,) at ``x`` (n,)."""
+        landmark, landmark_slope = self.landmark(x)
+        prior, prior_slope = self.prior(x)
+        nod, nod_slope = self.nod(x)
+        value = self.landmark_weight * landmark + self.prior_weight * prior + self.pitch_weight * nod
+        slope = self.landmark_weight * landmark_slope + self.prior_weight * prior_slope + self.pitch_weight * nod_slope
+        return value, slope
+
+    def prior_value(self, x: Floats) -> float:
+        """``L_reg + w_n / w_r L_nod`` at ``x`` (n,)."""
+        return self.prior(x)[0] + self.pitch_weight / self.prior_weight * self.nod(x)[0]
+
+    def curvature(self, x: Floats) -> Floats:
+        """Diagonal (n,) of the Gauss-Newton matrix: what the variables are scaled by."""
+        landmark = self.landmark_weight * self.landmark.curvature(x)
+        return landmark + self.prior_weight * self.prior.curvature(x) + self.pitch_weight * self.nod.curvature(x)
+
+    def matrix(self, x: Floats) -> Floats:
+        """The Gauss-Newton matrix (n, n)."""
+        landmark = self.landmark_weight * self.landmark.matrix(x)
+        return landmark + self.prior_weight * np.diag(self.prior.curvature(x)) + self.pitch_weight * self.nod.matrix(x)

@@ -1,0 +1,1 @@
+"""The optimisation problem of a landmark fit, and the way to its solution."""

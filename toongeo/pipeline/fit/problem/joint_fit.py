@@ -1,0 +1,62 @@
+"""Several pictures of one person, fitted with one identity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from toongeo.pipeline.fit.losses.joint_loss import JointLoss
+from toongeo.pipeline.fit.losses.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.problem.landmark_problem import LandmarkProblem
+from toongeo.pipeline.fit.problem.solution import Solution
+
+__all__ = ["joint_fit"]
+
+
+def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solution]:
+    """Solutions with one identity for problems with the same model and options.
+
+    The passes are those of `LandmarkProblem.solve`, in step: all pictures are minimised as one, and then the jaw
+    points and the robust weights of each are renewed. Status, passes and evaluations are those of all.
+    """
+    if len(problems) == 1:
+        return [problems[0].solve(algorithm)]
+    options = problems[0].options
+    placements = [problem.placement(problem.start) for problem in problems]
+    parts = [problem.start for problem in problems]
+    passes = evaluations = 0
+    while passes < options.max_passes:
+        loss = JointLoss(
+            [
+                problem.loss(placed.vertices, placed.prior_weight, placed.trust)
+                for problem, placed in zip(problems, placements, strict=True)
+            ]
+        )
+        x = loss.joined(parts)
+        minimum = nlopt_minimize(
+            loss,
+            x,
+            bounds=(
+                loss.joined([problem.bounds[0] for problem in problems]),
+                loss.joined([placed.upper for placed in placements]),
+            ),
+            scale=1 / np.sqrt(loss.curvature(x)),
+            algorithm=algorithm,
+            tolerance=options.tolerance,
+            max_evaluations=options.max_evaluations,
+            max_seconds=options.max_seconds,
+        )
+        parts = [loss.part(minimum.x, k) for k in range(len(problems))]
+        passes, evaluations = passes + 1, evaluations + minimum.evaluations
+        before = placements
+        placements = [
+            problem.renewed(placed, part, first=passes == 1)
+            for problem, placed, part in zip(problems, before, parts, strict=True)
+        ]
+        if all(p.settled(*pair) for p, *pair in zip(problems, before, placements, strict=True)):
+            break
+    return [
+        problem.solution(np.minimum(part, after.upper), placed, minimum.status, passes, evaluations)
+        for problem, part, placed, after in zip(problems, parts, before, placements, strict=True)
+    ]

@@ -1,0 +1,1 @@
+"""Lids in the picture."""

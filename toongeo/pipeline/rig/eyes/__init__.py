@@ -1,0 +1,1 @@
+"""Eyeballs, and lids in contact with them."""

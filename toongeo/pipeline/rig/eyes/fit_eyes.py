@@ -1,0 +1,173 @@
+"""Eyeballs behind the lids of a face."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from toongeo._read_only import read_only
+from toongeo.model import EyeballTemplate
+from toongeo.model.anatomy.gaze import GAZE_NAMES, TURN, gaze_rotation
+from toongeo.model.anatomy.lid_rings import lid_rings, opening_height
+from toongeo.model.anatomy.parts import SIDES
+from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.rig.rig import Rig
+
+LEAST, USUAL, MOST = 0.56, 0.72, 0.9  # radius / greatest width of the opening
+STEPS = 9  # radii that are tried from least to most
+PRIOR = np.array([0.12, 0.12, 0.3, 0.1])  # of the radius: s.d. of the centre about the opening's middle, of the radius
+RIM = 0.04  # of the radius: s.d. of the lids' edges about the sphere
+HUBER = 2.0  # s.d. beyond which a vertex pulls with constant force
+RIM_POINTS = 30  # a rim counts as so many independent ones
+FRONT = 0.9  # of the radius: how far from the line of sight the lids' edges may be
+OFF = 0.035  # of the radius: how far off the eyeball the lids' edges lie, and other skin at least
+WANDER = np.array([0.4, 0.35])  # of the opening's width and height: how far an iris moves from its middle
+NEAR = 1.6  # radii from where a centre is looked for: skin farther away does not come into the eyeball
+REACH = 2.0  # widths of the opening: skin farther away is not looked at
+
+
+@dataclass(frozen=True, eq=False)
+class Eyes:
+    """Left and right eyeball of a face.
+
+    Attributes
+    ----------
+    centres : (2, 3) float64, mm, model frame
+    radii : (2,) float64, mm
+    templates : left and right EyeballTemplate
+    turn : (2, 2) float64, degrees
+        How far each eye turns sideways, and up or down, at weight 1: as a person's, but in an opening that is small for
+        the eyeball only so far that the iris does not leave it.
+    pose : (8,) float64
+        Weights of ``GAZE_NAMES`` with which the eyes look as in the picture.
+    report : dict
+        ``seconds``.
+    """
+
+    centres: np.ndarray
+    radii: np.ndarray
+    templates: tuple[EyeballTemplate, ...]
+    turn: np.ndarray
+    pose: np.ndarray
+    report: dict[str, float]
+
+    def __post_init__(self) -> None:
+        read_only(self, "centres", "radii", "turn", "pose")
+
+    def vertices(self, side: int, rotation: np.ndarray | None = None) -> np.ndarray:
+        """Vertices (k, 3), mm, of eyeball 0 (left) or 1 (right), turned by a rotation (3, 3) of the gaze."""
+        unit = self.templates[side].vertices
+        turned = unit if rotation is None else unit @ rotation.T
+        return self.centres[side] + self.radii[side] * turned
+
+    def looking_as_drawn(self, side: int) -> np.ndarray:
+        """Vertices (k, 3), mm, of an eyeball that looks as in the picture."""
+        return self.looking(side, dict(zip(GAZE_NAMES, self.pose.tolist(), strict=True)))
+
+    def looking(self, side: int, weights: dict[str, float]) -> np.ndarray:
+        """Vertices (k, 3), mm, for ``eyeLook*`` weights, which turn the eyeball."""
+        return self.vertices(side, gaze_rotation(SIDES[side], weights, self.turn[side]))
+
+
+def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
+    """A sphere for each eye, robustly fitted to the edges of its lids (Pan et al. 2024, section 4.3).
+
+    The paper moves a fitted sphere in until no lid touches it, which leaves the eyeballs of wide eyes deep in their
+    sockets. Here spheres of several sizes are fitted, and the one is taken from which the edges of the lids differ
+    least that neither comes out at the cheek or the temple nor has the lids beside it;
+    :func:`~toongeo.pipeline.rig.eyes.seat_lids.seat_lids` then lays the lids onto it.
+
+    Parameters
+    ----------
+    face : AlignedFace
+    rig : Rig
+        For its neutral face.
+
+    Returns
+    -------
+    Eyes
+    """
+    started = time.perf_counter()
+    centres, radii, turn = np.empty((2, 3)), np.empty(2), np.empty((2, 2))
+    axes = np.array([[0.0, 0.0, 1.0], _line_of_sight(face)])
+    for side, name in enumerate(SIDES):
+        rings = lid_rings(face.model, name)
+        skin = face.region("skin").copy()
+        skin[rings.vertices] = False
+        centres[side], radii[side] = _sphere(rig.neutral[rings.vertices], rig.neutral[skin], axes)
+        turn[side] = _turn(rig.neutral[rings.upper[0]], rig.neutral[rings.lower[0]], radii[side])
+    report = {"seconds": time.perf_counter() - started}
+    return Eyes(centres, radii, face.model.eyes, turn, np.zeros(len(GAZE_NAMES)), report)
+
+
+def _turn(upper: np.ndarray, lower: np.ndarray, radius: float) -> np.ndarray:
+    """Degrees (2,) that an eye turns sideways, and up or down, between rims (k, 3) and (m, 3)."""
+    opening = np.array([np.linalg.norm(upper[-1] - upper[0]), opening_height(upper, lower)])
+    return np.minimum(TURN, np.rad2deg(np.arcsin(np.minimum(1, WANDER * opening / radius))))
+
+
+def _line_of_sight(face: AlignedFace) -> np.ndarray:
+    """Unit vector (3,), model frame, from the eyes to the camera."""
+    px = face.project(np.zeros((1, 3)))
+    near, far = face.camera.unproject(np.vstack([px, px]), np.array([1.0, 0.0]))
+    return np.asarray((near - far) / np.linalg.norm(near - far))
+
+
+def _sphere(points: np.ndarray, skin: np.ndarray, axes: np.ndarray) -> tuple[np.ndarray, float]:
+    """Centre (3,) and radius of the sphere for edges of lids (k, 3); skin (m, 3) stays outside where that is possible.
+
+    ``axes`` (a, 3) are directions from which the edges should be seen before the sphere, not beside it.
+    """
+    size = float(np.linalg.norm(points[:, None] - points, axis=2).max())
+    skin = skin[np.linalg.norm(skin - points.mean(0), axis=1) < REACH * size]
+    wanted = _robust_sphere(points, _behind(points, USUAL * size), USUAL * size)[1]
+    best, least = (points.mean(0), size), np.inf
+    for radius in np.linspace(LEAST, MOST, STEPS) * size:
+        behind = _behind(points, radius)
+        near = skin[np.linalg.norm(skin - behind, axis=1) < NEAR * radius]
+        centre, _ = _robust_sphere(points, behind, radius, near)
+        offset = points - centre
+        beside = np.sqrt(((offset[:, None] - (offset @ axes.T)[..., None] * axes) ** 2).sum(-1)).max() / radius
+        through = 1 - np.linalg.norm(skin - centre, axis=1).min(initial=np.inf) / radius
+        cost = max(0.0, beside - FRONT) + max(0.0, through) + 0.1 * abs(np.log(radius / wanted))
+        if cost < least:
+            best, least = (centre, float(radius)), cost
+    return best
+
+
+def _behind(points: np.ndarray, radius: float) -> np.ndarray:
+    """Centre (3,) of a sphere on which points (k, 3) lie about, behind the middle of them."""
+    middle = (points[:, :2].min(0) + points[:, :2].max(0)) / 2
+    beside = ((points[:, :2] - middle) ** 2).sum(1)
+    return np.r_[middle, (points[:, 2] - np.sqrt(np.maximum(radius**2 - beside, 0))).mean()]
+
+
+def _robust_sphere(
+    points: np.ndarray, centre: np.ndarray, radius: float, skin: np.ndarray | None = None
+) -> tuple[np.ndarray, float]:
+    """Sphere off which points (k, 3) lie by ``OFF`` of its radius, held near a given centre and radius.
+
+    With ``skin`` (m, 3), that shall be outside, the radius is as given.
+
+    Gauss-Newton with Huber weights. The edges of lids are nearly flat, and those of shut eyes a line, so that spheres
+    of very different size and place suit them; the prior decides among these.
+    """
+    start = np.r_[centre, radius]
+    x = start.copy()
+    precision = 1.0 / (PRIOR * radius) ** 2
+    free = np.arange(4 if skin is None else 3)
+    count = len(points)
+    if skin is not None:
+        points = np.vstack([points, skin])
+    for _ in range(10):
+        offset = points - x[:3]
+        distance = np.linalg.norm(offset, axis=1)
+        residual = (distance - (1 + OFF) * x[3]) / (RIM * radius)
+        residual[count:] = np.minimum(residual[count:], 0.0)
+        weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residual), 1e-12)) * (RIM_POINTS / count)
+        weight[count:] *= residual[count:] < 0
+        J = np.column_stack([-offset / distance[:, None], np.full(len(points), -1 - OFF)]) / (RIM * radius)
+        H = J.T @ (weight[:, None] * J) + np.diag(precision)
+        step = J.T @ (weight * residual) + precision * (x - start)
+        x[free] -= np.linalg.solve(H[np.ix_(free, free)], step[free])
+    return x[:3], float(x[3])

@@ -1,0 +1,1 @@
+"""Expressions for heads that were modelled elsewhere."""

@@ -1,0 +1,121 @@
+"""A model's mesh in the shape of a head from elsewhere."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from toongeo._read_only import read_only
+from toongeo.geometry.nonrigid_register import RegisteredMesh, nonrigid_register
+from toongeo.geometry.rotations.similarity import similarity
+from toongeo.model import MorphableModel
+from toongeo.model.anatomy.rims import opening_rim
+from toongeo.model.ibug68 import INNER
+from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.rim_anchors import rim_anchors
+from toongeo.pipeline.align.straighten_teeth import PARTS, straighten_teeth
+from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
+from toongeo.render import ScaledOrthographicCamera
+
+RIM_WEIGHT = 0.05  # of a landmark's: what lies between two of them on a rim is interpolated
+# Parts of the template that a head may lack or have in another form, and how far behind their rims (mm) they begin: the
+# inner sides of lids and lips are looked for on the head.
+HIDDEN = {"socket_left": 3.0, "socket_right": 3.0, "mouth_cavity": 8.0, "teeth_upper": 0, "teeth_lower": 0, "tongue": 0}
+
+
+@dataclass(frozen=True, eq=False)
+class RegisteredFace:
+    """A foreign head as a face of a model.
+
+    Attributes
+    ----------
+    face : AlignedFace
+        Model frame, mm.
+    registration : RegisteredMesh
+    scale, rotation, shift : float, (3, 3), (3,)
+        ``scale * x @ rotation.T + shift`` takes points of the model frame to the foreign one.
+    """
+
+    face: AlignedFace
+    registration: RegisteredMesh
+    scale: float
+    rotation: np.ndarray
+    shift: np.ndarray
+
+    def __post_init__(self) -> None:
+        read_only(self, "rotation", "shift")
+
+    def to_model(self, points: np.ndarray) -> np.ndarray:
+        """Points (k, 3) of the foreign frame in the model frame, mm."""
+        return np.asarray((points - self.shift) @ self.rotation / self.scale)
+
+    def to_foreign(self, vectors: np.ndarray) -> np.ndarray:
+        """Displacements (..., 3), mm, model frame, in the foreign frame."""
+        return np.asarray(self.scale * vectors @ self.rotation.T)
+
+
+def register_face(V: np.ndarray, F: np.ndarray, points: np.ndarray, model: MorphableModel) -> RegisteredFace:
+    """Lay the mean of a model on a head of another topology.
+
+    The 51 inner landmarks and, more softly, the rims of lids and lips between them guide
+    :func:`toongeo.nonrigid_register`. Jaw points do not: they lie on an outline that depends on the view, and
+    every model has them elsewhere. The inside of sockets and mouth is taken along, teeth keep their form.
+
+    Parameters
+    ----------
+    V : (n, 3) float64
+        The head at rest, any unit and pose.
+    F : (m, 3) int64
+    points : (68, 3) float64
+        Its landmarks, same frame; NaN rows are missing.
+    model : MorphableModel
+
+    Returns
+    -------
+    RegisteredFace
+
+    Raises
+    ------
+    ValueError
+        As :func:`toongeo.nonrigid_register`.
+    """
+    inner = np.isfinite(points).all(1) & np.isin(np.arange(len(points)), INNER)
+    scale, rotation, shift = similarity(model.mean[model.landmarks[inner]], points[inner])
+    wanted = np.where(inner[:, None], (points - shift) @ rotation / scale, np.nan)
+    rim, moves = rim_anchors(model, wanted - model.mean[model.landmarks])
+    rim_points = scale * (model.mean[rim] + moves) @ rotation.T + shift
+    registration = nonrigid_register(
+        model.mean,
+        model.faces,
+        V,
+        F,
+        np.r_[model.landmarks[inner], rim],
+        np.vstack([points[inner], rim_points]),
+        fitted=~hidden(model),
+        landmark_weight=np.r_[np.ones(inner.sum()), np.full(len(rim), RIM_WEIGHT)],
+    )
+    vertices = (registration.vertices - shift) @ rotation / scale
+    if all(name in model.regions for name in PARTS):
+        vertices = straighten_teeth(model, model.mean, vertices)
+    camera = ScaledOrthographicCamera(1.0, np.eye(3), np.zeros(2))
+    fit = FaceFit(
+        identity=np.zeros(len(model.identity)),
+        expression=np.zeros(len(model.expression)),
+        camera=camera,
+        landmark_vertices=model.landmarks,
+        model=model,
+        report=FitReport("none", "the mean face", 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, (), 0.0),
+    )
+    face = AlignedFace(vertices, camera, model.landmarks, model, fit, {})
+    return RegisteredFace(face, registration, scale, rotation, shift)
+
+
+def hidden(model: MorphableModel) -> np.ndarray:
+    """Mask (n,) of the parts of a model that lie behind lids and lips."""
+    mask = np.zeros(len(model.mean), bool)
+    for name, depth in HIDDEN.items():
+        if name in model.regions:
+            inside = np.flatnonzero(model.regions[name])
+            rim = model.mean[opening_rim(model, name)]
+            mask[inside] = cKDTree(rim).query(model.mean[inside])[0] > depth if len(rim) else True
+    return mask

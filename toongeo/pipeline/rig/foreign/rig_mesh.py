@@ -1,0 +1,161 @@
+"""A rig for a head that was modelled elsewhere."""
+
+import time
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from toongeo.geometry import DeformationTransfer, validate_mesh
+from toongeo.geometry.landmark_matrix import landmark_matrix
+from toongeo.geometry.rotations.similarity import similarity
+from toongeo.model import MorphableModel, default_model
+from toongeo.model.anatomy.gaze import GAZE_NAMES
+from toongeo.model.ibug68 import INNER
+from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.straighten_teeth import PARTS
+from toongeo.pipeline.rig.foreign.carry_shapes import carry_shapes
+from toongeo.pipeline.rig.foreign.close_gaps import close_gaps
+from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
+from toongeo.pipeline.rig.foreign.register_face import hidden, register_face
+from toongeo.pipeline.rig.rig import Rig
+
+LEAST_LANDMARKS = 12  # of the inner ones
+LIKENESS = 0.5  # of their spread: how far landmarks of a face may be from the model's, root mean square
+STILL = 1e-3  # of the largest motion: what moves less in every expression is held
+LEAST_MATCHED = 0.5  # of the face: with less the two are not the same kind of surface
+
+
+def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: MorphableModel | None = None) -> Rig:
+    """Give a neutral head of any topology the named expressions of a model.
+
+    The model's mean is laid on the head by landmarks and non-rigid closest points
+    (:func:`toongeo.nonrigid_register`), takes over the gradients of the expressions there (Sumner and Popovic's
+    transfer, triangles weighted by area), and closes the gaps that blinks have left. Every vertex of the head then
+    moves as the point of the model's mesh that lies on it; parts without one follow their surroundings, teeth as the
+    model's teeth, eyeballs not at all.
+
+    Parameters
+    ----------
+    V : (n, 3) float
+        The head at rest, mouth closed and eyes open; any unit, any pose.
+    F : (m, 3) int
+        Triangles, counter-clockwise from outside.
+    landmarks : (68,) int or (68, 3) float
+        iBUG-68: vertices, or points on the surface in the frame of `V`. NaN rows are missing. Jaw points (0-16) are not
+        needed; of the others at least twelve are.
+    model : MorphableModel, optional
+        :func:`toongeo.default_model` unless given.
+
+    Returns
+    -------
+    Rig
+        ``names``, ``neutral`` (`V`) and ``deltas`` (k, n, 3) in the frame and unit of `V`; nothing follows the gaze.
+        ``report`` holds ``seconds``, ``matched`` (share of the model's face that found a partner), ``distance`` (its
+        mean distance, in units of `V`) and ``partnered`` (share of the head's vertices).
+
+    Raises
+    ------
+    ValueError
+        On a malformed mesh, landmarks of another shape, out of range or too few, or a mesh that is no face where the
+        landmarks are.
+
+    See Also
+    --------
+    build_rig : for a face of the model's own topology.
+
+    References
+    ----------
+    R. W. Sumner, J. Popovic, "Deformation transfer for triangle meshes", ACM TOG 23(3), 2004.
+
+    Examples
+    --------
+    >>> model = default_model()
+    >>> front = model.faces[model.region("face")[model.faces].all(1)]
+    >>> rig = rig_mesh(0.1 * model.mean, front, model.landmarks)
+    >>> rig.deltas.shape[0], rig.vertices({"jawOpen": 1.0}).shape == model.mean.shape
+    (46, True)
+    """
+    started = time.perf_counter()
+    model = model or default_model()
+    vertices, faces = validate_mesh(V, F)
+    used = np.unique(faces)
+    points = _checked_points(vertices, faces, landmarks, model)
+    # Vertices in no triangle have no surface around them, and stay.
+    local = np.searchsorted(used, faces)
+    head = register_face(vertices[used], local, points, model)
+    skin = ~hidden(model)
+    face = model.regions.get("face", skin) & skin
+    matched = float(head.registration.matched[face].mean())
+    if matched < LEAST_MATCHED:
+        raise ValueError(
+            f"V: expected a head on which the model's face fits, with triangles counter-clockwise from outside, "
+            f"got one where {matched:.0%} of it finds a partner"
+        )
+    shapes = head.to_foreign(_transferred(head.face))
+    carrier = head.registration.vertices.copy()
+    carrier[~skin] = head.to_foreign(head.face.vertices[~skin]) + head.shift
+    carried, partnered = carry_shapes(carrier, model.faces, skin, shapes, vertices[used], local)
+    deltas = np.zeros((len(shapes), len(vertices), 3), np.float32)
+    deltas[:, used] = settle_loose_parts(
+        vertices[used], local, points, carried, partnered, _mouth_parts(model, carrier, shapes)
+    )
+    return Rig(
+        names=model.expression_names[: model.n_named],
+        neutral=vertices.copy(),
+        deltas=deltas,
+        gaze=np.zeros((len(GAZE_NAMES), *vertices.shape), np.float32),
+        pose=np.zeros(model.n_named),
+        report={
+            "seconds": time.perf_counter() - started,
+            "matched": matched,
+            "distance": float(head.registration.distances[face & head.registration.matched].mean()),
+            "partnered": float(partnered.mean()),
+        },
+    )
+
+
+def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike, model: MorphableModel) -> np.ndarray:
+    """Landmarks as points (68, 3); NaN rows are missing."""
+    matrix, given = landmark_matrix(V, F, landmarks, "landmarks")
+    if len(given) != 68:
+        raise ValueError(f"landmarks: expected 68 vertices or points (iBUG-68), got {len(given)}")
+    if given[INNER].sum() < LEAST_LANDMARKS:
+        raise ValueError(
+            f"landmarks: expected at least {LEAST_LANDMARKS} of the points 17-67, got {given[INNER].sum()}"
+        )
+    points = np.where(given[:, None], matrix @ V, np.nan)
+    inner = INNER[given[INNER]]
+    own, found = model.mean[model.landmarks[inner]], points[inner]
+    spread = np.sqrt(((found - found.mean(0)) ** 2).sum(1).mean())
+    if not spread > 0:
+        raise ValueError("landmarks: expected the points of a face, got one place for all")
+    scale, rotation, shift = similarity(own, found)
+    misfit = np.sqrt(((found - scale * own @ rotation.T - shift) ** 2).sum(1).mean()) / spread
+    if not misfit <= LIKENESS:
+        raise ValueError(
+            f"landmarks: expected the points of a face in the order of iBUG-68, got ones that are off by "
+            f"{misfit:.0%} of their spread from the model's, however it is turned"
+        )
+    return points
+
+
+def _mouth_parts(model: MorphableModel, vertices: np.ndarray, shapes: np.ndarray) -> MouthParts:
+    parts = tuple(model.regions[name] for name in PARTS if name in model.regions)
+    mouth = [*parts, model.regions.get("mouth_cavity", np.zeros(len(vertices), bool))]
+    return MouthParts(vertices, shapes, np.any(mouth, axis=0), parts)
+
+
+def _transferred(face: AlignedFace) -> np.ndarray:
+    """Displacements (k, n, 3) of the model's expressions on this face, mm; the blinks leave no gap."""
+    model = face.model
+    shapes = model.expression[: model.n_named].astype(np.float64)
+    motion = np.abs(shapes).max(axis=(0, 2))
+    still = np.flatnonzero(motion <= STILL * motion.max())
+    transfer = DeformationTransfer(model.mean, model.faces, face.vertices, pinned=still, weights="area")
+    moved = transfer.transfer(model.mean + shapes)
+    for side in ("left", "right"):
+        name = f"eyeBlink{side.capitalize()}"
+        if name in model.expression_names[: model.n_named]:
+            k = model.expression_index(name)
+            moved[k] = close_gaps(model, face.vertices, moved[k], side)
+    return moved - face.vertices

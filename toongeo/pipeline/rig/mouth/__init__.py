@@ -1,0 +1,1 @@
+"""Lips in contact, teeth behind them."""

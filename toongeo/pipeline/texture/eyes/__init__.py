@@ -1,0 +1,1 @@
+"""Irises found in the picture, eyes aimed and painted."""
