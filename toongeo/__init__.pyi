@@ -45,6 +45,7 @@ from toongeo.pipeline import ClassicalParser as ClassicalParser
 from toongeo.pipeline import Eyes as Eyes
 from toongeo.pipeline import FaceFit as FaceFit
 from toongeo.pipeline import FitOptions as FitOptions
+from toongeo.pipeline import Hair as Hair
 from toongeo.pipeline import PhotometricOptions as PhotometricOptions
 from toongeo.pipeline import RidgeRegressor as RidgeRegressor
 from toongeo.pipeline import Rig as Rig
@@ -52,6 +53,7 @@ from toongeo.pipeline import adjust_coefficients as adjust_coefficients
 from toongeo.pipeline import align_face as align_face
 from toongeo.pipeline import bake_eyes as bake_eyes
 from toongeo.pipeline import bake_texture as bake_texture
+from toongeo.pipeline import build_hair as build_hair
 from toongeo.pipeline import build_rig as build_rig
 from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import diffuse_texture as diffuse_texture
@@ -61,6 +63,7 @@ from toongeo.pipeline import fit_eyes as fit_eyes
 from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.pipeline import fit_mouth as fit_mouth
 from toongeo.pipeline import keep_lids_outside as keep_lids_outside
+from toongeo.pipeline import make_room as make_room
 from toongeo.pipeline import neutral_face as neutral_face
 from toongeo.pipeline import parse_face as parse_face
 from toongeo.pipeline import photometric_fit as photometric_fit
@@ -76,6 +79,7 @@ from toongeo.protocols import FaceLabel as FaceLabel
 from toongeo.protocols import FaceParse as FaceParse
 from toongeo.protocols import HairFinder as HairFinder
 from toongeo.protocols import HairMask as HairMask
+from toongeo.protocols import HairModeler as HairModeler
 from toongeo.protocols import LandmarkMapper as LandmarkMapper
 from toongeo.protocols import TextureGenerator as TextureGenerator
 from toongeo.protocols import TextureGeometry as TextureGeometry

@@ -228,6 +228,18 @@ class HairFinder(Protocol):
         ...
 
 
+class HairModeler(Protocol):
+    """Builds hair from the pixels that show it; a network, say, or :func:`toongeo.build_hair`."""
+
+    def __call__(self, img: np.ndarray, face: Any, rig: Any, mask: np.ndarray) -> Any:
+        """Hair of the picture (H, W, 3) uint8, as a :class:`toongeo.Hair` in the model frame.
+
+        ``face`` is a :class:`toongeo.AlignedFace` that has made room for hair, ``rig`` its :class:`toongeo.Rig`,
+        ``mask`` (H, W) bool. None: there is no hair to build, and it stays painted on the head.
+        """
+        ...
+
+
 class FittedFace(Protocol):
     """What the stages share: a face mesh in the model frame, and the camera that saw it."""
 

@@ -22,6 +22,8 @@ def make(
     crop: Crop = "head",
     snap: bool = False,
     photometric: bool = False,
+    hair: bool = True,
+    hair_mask: Path | None = None,
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> Avatar:
@@ -47,7 +49,14 @@ def make(
             bar.set_description(stage)
 
         avatar = make_avatar(
-            img, points, snap=snap, photometric=photometric, texture_size=texture_size, progress=announce
+            img,
+            points,
+            snap=snap,
+            photometric=photometric,
+            hair=hair,
+            hair_mask=hair_mask,
+            texture_size=texture_size,
+            progress=announce,
         )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")

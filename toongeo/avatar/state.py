@@ -17,7 +17,7 @@ from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
 from toongeo.pipeline.fit.face_fit import FitReport, PhotometricReport
-from toongeo.protocols import FaceParse
+from toongeo.protocols import FaceParse, HairMask
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 
 TIMES = "seconds"  # what a run took is not kept: one input gives one file, bit for bit
@@ -31,6 +31,7 @@ CLASSES: dict[str, Any] = {
         FaceFit,
         FaceParse,
         FitReport,
+        HairMask,
         MeshQuality,
         PerspectiveCamera,
         PhotometricReport,
@@ -38,6 +39,8 @@ CLASSES: dict[str, Any] = {
         ScaledOrthographicCamera,
     )
 }
+# Fields that came later are left out where they are None: a file without them is as it was before.
+LATER = ("hair",)
 VERSION = 1
 MOST_BYTES = 1 << 30  # that a file may ask for
 
@@ -133,6 +136,7 @@ class _Writer:
                 return {"eye": side}
         if is_dataclass(value) and type(value) is CLASSES.get(type(value).__name__):
             parts = {field.name: getattr(value, field.name) for field in fields(value) if field.init}
+            parts = {name: v for name, v in parts.items() if v is not None or name not in LATER}
             return {type(value).__name__: {name: self.node(v, f"{where}.{name}") for name, v in parts.items()}}
         kinds = f"numbers, texts, arrays or {', '.join(CLASSES)}"
         raise ValueError(f"{where}: expected {kinds} in a loadable file, got {type(value)}")

@@ -1,3 +1,5 @@
 """Hair as a closed shell about the head, from the pixels of one picture that show it."""
 
-__all__: list[str] = []
+from toongeo._lazy import attach
+
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -68,7 +68,7 @@ def build_hair(img: NDArray[np.uint8], face: AlignedFace, rig: Rig, mask: NDArra
     return Hair(vertices, mesh.faces, uv.astype(np.float32).astype(np.float64), uv_faces, texture)
 
 
-def _to_rim(parts: Regions) -> NDArray[np.float64]:
+def _to_rim(parts: Regions) -> NDArray[np.floating]:
     """mm (rows, columns) to the outline of the whole shell."""
     return np.abs(signed(parts.whole))
 

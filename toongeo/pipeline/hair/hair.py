@@ -41,7 +41,10 @@ class Hair:
         for name, rows, columns in (("vertices", self.vertices, 3), ("uv", self.uv, 2)):
             if rows.ndim != 2 or rows.shape[1] != columns or not np.isfinite(rows).all():
                 raise ValueError(f"{name}: expected finite numbers (n, {columns}), got shape {rows.shape}")
-        for name, corners, count in (("faces", self.faces, len(self.vertices)), ("uv_faces", self.uv_faces, len(self.uv))):
+        for name, corners, count in (
+            ("faces", self.faces, len(self.vertices)),
+            ("uv_faces", self.uv_faces, len(self.uv)),
+        ):
             if corners.shape != (len(self.faces), 3) or corners.min(initial=0) < 0 or corners.max(initial=-1) >= count:
                 raise ValueError(f"{name}: expected indices ({len(self.faces)}, 3) below {count}, got {corners.shape}")
         if self.texture.ndim != 3 or self.texture.shape[2] != 3 or self.texture.dtype != np.uint8:

@@ -22,9 +22,7 @@ __all__ = ["make_room"]
 
 Mask = NDArray[np.bool_]
 _SKIN = tuple(
-    label
-    for label in FaceLabel
-    if label not in (FaceLabel.BACKGROUND, FaceLabel.HAIR, FaceLabel.OTHER, FaceLabel.HAT)
+    label for label in FaceLabel if label not in (FaceLabel.BACKGROUND, FaceLabel.HAIR, FaceLabel.OTHER, FaceLabel.HAT)
 )
 _COVERED_MM = 1.0  # so far inside the hair a vertex is covered
 _SIDEWAYS = 0.6  # cosine to the viewer below which a covered side of the head gives way

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
-from toongeo.pipeline.hair.colours.panels import Panel, Texels, panels, texels
+from toongeo.pipeline.hair.colours.panels import Texels, panels, texels
 from toongeo.pipeline.hair.colours.picture_colours import PictureColours
 from toongeo.pipeline.hair.colours.strand_frame import StrandFrame
 from toongeo.pipeline.hair.plane.masks import nearest_set
@@ -13,7 +13,7 @@ from toongeo.pipeline.hair.shell.shell_mesh import ShellMesh
 
 __all__ = ["hair_texture"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
 _TURNED = (0.3, 0.6)  # cosines to the viewer between which the picture takes over from strands
 

@@ -11,7 +11,7 @@ from toongeo.render import interpolate, rasterize
 
 __all__ = ["Panel", "Texels", "panels", "texels"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
 
 # Directions in the plane's frame: to the right of the view, up in it, and towards its viewer.

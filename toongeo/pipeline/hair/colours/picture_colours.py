@@ -12,7 +12,7 @@ from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 
 __all__ = ["PictureColours", "picture_colours"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 
 _EDGE_MM = 0.8  # along the hair's edge the picture is mixed with what is beside it
@@ -106,8 +106,7 @@ def _pushed(picture: NDArray[np.uint8], known: Mask, sigma: float) -> NDArray[np
     reduce = max(1, int(sigma / 3))
     size = (max(1, picture.shape[1] // reduce), max(1, picture.shape[0] // reduce))
     weight = known.astype(np.float32)
-    layers = np.dstack([picture * weight[..., None], weight]).astype(np.float32)
-    layers = cv2.resize(layers, size, interpolation=cv2.INTER_AREA)
+    layers = cv2.resize(np.dstack([picture * weight[..., None], weight]), size, interpolation=cv2.INTER_AREA)
     total = layers.mean((0, 1)) * np.float32(1e-9)
     for k, share in enumerate((1.0, 1e-3, 1e-6)):
         total = total + np.float32(share) * cv2.GaussianBlur(layers, (0, 0), sigma / reduce * 3**k)

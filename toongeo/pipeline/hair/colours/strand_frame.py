@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 __all__ = ["StrandFrame"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 _WHORL = np.deg2rad(30.0)  # by which the whorl lies behind the top of the head
 
 

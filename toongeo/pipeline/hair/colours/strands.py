@@ -15,11 +15,11 @@ def strands(colours: PictureColours, radius: float) -> NDArray[np.float32]:
     """Differences of colour (along, across, 3), a row and a column a mm, periodic across."""
     across = max(8, round(2 * np.pi * radius))
     rng = np.random.default_rng(0)
-    noise = rng.standard_normal((_LONG // 4, across)).astype(np.float32)
-    noise = cv2.GaussianBlur(np.hstack([noise] * 3), (0, 0), sigmaX=0.6, sigmaY=4.0)[:, across : 2 * across]
-    noise = cv2.resize(noise, (across, _LONG), interpolation=cv2.INTER_LINEAR)
+    noise = np.asarray(rng.standard_normal((_LONG // 4, across)), np.float32)
+    smooth = cv2.GaussianBlur(np.hstack([noise] * 3), (0, 0), sigmaX=0.6, sigmaY=4.0)[:, across : 2 * across]
+    fine = cv2.resize(smooth, (across, _LONG), interpolation=cv2.INTER_LINEAR)
     deep = colours.known & (colours.inside > 4)
     deep = deep if deep.any() else colours.known
     rest = (colours.drawn - colours.broad)[deep]
     contrast = np.clip(1.25 * np.median(np.abs(rest.mean(1))), 0, 25)
-    return np.asarray(np.repeat((noise / noise.std() * contrast)[..., None], 3, 2), np.float32)
+    return np.asarray(np.repeat((fine / fine.std() * contrast)[..., None], 3, 2), np.float32)

@@ -9,7 +9,7 @@ from toongeo.render import interpolate, rasterize
 
 __all__ = ["ball_offset", "depth_maps", "silhouette"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 _NOWHERE = -1e6
 
 

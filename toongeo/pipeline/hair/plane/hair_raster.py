@@ -55,9 +55,7 @@ def _near(hair: NDArray[np.bool_], crown: NDArray[np.bool_]) -> NDArray[np.bool_
     return np.asarray(np.isin(pieces, touched[touched > 0]))
 
 
-def _completed(
-    hair: NDArray[np.bool_], pictured: NDArray[np.bool_], crown: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+def _completed(hair: NDArray[np.bool_], pictured: NDArray[np.bool_], crown: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Hair that goes on beyond the picture's border, over the crown, as thick as beside it."""
     beyond = depth_inside(~crown)
     rows = np.flatnonzero(crown.any(1))

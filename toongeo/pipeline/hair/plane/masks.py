@@ -8,10 +8,20 @@ from numpy.typing import NDArray
 
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM
 
-__all__ = ["closed", "depth_inside", "dilated", "eroded", "large_pieces", "nearest_set", "opened", "signed", "without_holes"]
+__all__ = [
+    "closed",
+    "depth_inside",
+    "dilated",
+    "eroded",
+    "large_pieces",
+    "nearest_set",
+    "opened",
+    "signed",
+    "without_holes",
+]
 
 Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 
 
 def depth_inside(mask: Mask) -> Floats:

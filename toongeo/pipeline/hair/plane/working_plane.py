@@ -16,7 +16,7 @@ CELL_MM = 1.25  # side of a cell: a third of the thinnest strand that is kept
 _PAD_MM = 25.0  # of empty cells about head and hair: more than any ball that rolls over them
 _MOST_PIXELS = 20_000  # of the mask, whose extent is asked
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 
 
 @dataclass(frozen=True, eq=False)

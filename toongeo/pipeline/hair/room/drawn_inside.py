@@ -12,7 +12,7 @@ from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 
 __all__ = ["drawn_inside"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 _INSIDE_MM = 3.5  # between the outline and what is drawn inside: the thinnest hair
 _ROUNDS, _PASSES = 4, 6  # pushes, and passes that spread each over the neighbours
 

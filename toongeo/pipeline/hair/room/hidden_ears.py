@@ -29,7 +29,7 @@ def hidden_ears(
     return tuple(hidden)
 
 
-def shrunken_ears(face: AlignedFace, X: NDArray[np.float64], names: tuple[str, ...]) -> NDArray[np.float64]:
+def shrunken_ears(face: AlignedFace, X: NDArray[np.floating], names: tuple[str, ...]) -> NDArray[np.floating]:
     """Displacement (n, 3) that draws the ears of these regions into their roots; X (n, 3) in any frame."""
     moved = np.zeros_like(X)
     F = face.faces

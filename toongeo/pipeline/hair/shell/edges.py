@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 __all__ = ["boundary_edges", "edges_of", "halved"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
 
 

@@ -8,7 +8,7 @@ from toongeo.pipeline.hair.shell.edges import edges_of
 
 __all__ = ["faired"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 _ROUNDS, _SHRINK, _SWELL = 25, 0.5, -0.51  # of Taubin 1995: a round keeps what is broad as large as it was
 _FLOOR_MM2 = 1.0  # added to squared lengths of edges, so that none counts for all
 

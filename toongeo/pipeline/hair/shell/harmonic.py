@@ -9,7 +9,7 @@ from toongeo.geometry import cotangent_laplacian
 
 __all__ = ["smooth_max", "solved"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 
 
 def solved(P: Floats, T: NDArray[np.int64], known: NDArray[np.bool_], values: Floats, source: Floats) -> Floats:

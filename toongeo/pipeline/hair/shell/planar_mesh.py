@@ -14,7 +14,7 @@ from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 
 __all__ = ["planar_mesh"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
@@ -79,8 +79,8 @@ def _outlines(plane: WorkingPlane, mask: Mask) -> list[Floats]:
         line = contour[:-1, ::-1] - 2
         if len(line) < 8:
             continue
-        simple = cv2.approxPolyDP(np.float32(line)[:, None], _EPSILON, True)[:, 0].astype(np.float64)
-        if len(simple) >= 3 and cv2.contourArea(np.float32(simple)) * CELL_MM**2 > _SMALLEST_MM2:
+        simple = cv2.approxPolyDP(line[:, None].astype(np.float32), _EPSILON, True)[:, 0].astype(np.float64)
+        if len(simple) >= 3 and cv2.contourArea(simple.astype(np.float32)) * CELL_MM**2 > _SMALLEST_MM2:
             lines.append(plane.points(simple))
     return lines
 
@@ -119,7 +119,7 @@ def _joined(lines: list[Floats]) -> _Outlines:
 
 def _inner_points(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask], taken: Floats) -> Floats:
     """Rows of points beside the outlines, and hexagons between."""
-    rows = []
+    rows: list[Floats] = []
     distances = [signed(mask) for mask in (whole, *parts)]
     for distance in distances:
         soft = cv2.GaussianBlur(distance, (0, 0), 1.5)

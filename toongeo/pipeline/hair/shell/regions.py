@@ -16,7 +16,7 @@ from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 __all__ = ["HeadRaster", "Regions", "head_raster", "regions"]
 
 Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 
 CLEAR_MM = 2.0  # between skin, in all expressions, and hair
 _AROUND_MM = 3.0  # by which hair behind the head is larger than the scalp, where the face or ears hide it

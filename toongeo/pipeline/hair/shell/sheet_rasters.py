@@ -14,7 +14,7 @@ from toongeo.pipeline.hair.shell.regions import HeadRaster, Regions
 
 __all__ = ["SheetMaps", "SheetRasters"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 
 _WIDE_MM = 5.0  # ball that rolls over the skin where the hairline runs: it bridges the steep side of the cheeks

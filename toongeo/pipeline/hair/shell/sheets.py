@@ -14,7 +14,7 @@ from toongeo.pipeline.hair.shell.sheet_rasters import SheetMaps, SheetRasters
 
 __all__ = ["Sheets", "sheets"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
@@ -138,9 +138,7 @@ def _front(
     return faired(P, front.triangles, z, front.used & ~line, maps.front_floor + _KEPT * thick, np.full(n, np.inf))
 
 
-def _back(
-    P: Floats, back: _Sheet, rasters: SheetRasters, maps: SheetMaps, rim: Mask, depth: Floats
-) -> Floats:
+def _back(P: Floats, back: _Sheet, rasters: SheetRasters, maps: SheetMaps, rim: Mask, depth: Floats) -> Floats:
     """The smaller of a membrane that is as full as the skull asks for, and of hair of a thickness behind the skin."""
     n, head = len(P), rasters.head
     free = back.border & ~rim
@@ -163,5 +161,3 @@ def _back(
 def _distance(P: Floats, marked: Mask) -> Floats:
     """mm (n,) to the nearest marked point."""
     return cKDTree(P[marked]).query(P)[0] if marked.any() else np.full(len(P), 1e3)
-
-

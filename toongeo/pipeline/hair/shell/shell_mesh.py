@@ -14,7 +14,7 @@ from toongeo.pipeline.hair.shell.sheets import Sheets, sheets
 
 __all__ = ["ShellMesh", "shell_mesh"]
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
 
 _LONGEST_MM = 10.0  # of an edge that is seen
