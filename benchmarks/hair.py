@@ -7,7 +7,7 @@ from the mask that the program finds, where it trusts it. Of each picture:
 - IoU: of the hair that is seen by the picture's camera with the mask by hand, and with the mask that it was built from.
 - silhouette: IoU of head and hair above the chin with the picture's (masks/NAME.png beside the picture, or else hair
   and what the parser takes for the head), painted -> shell.
-- through: pixels where skin lies up to 5 mm before hair, more than 4 mm from the hair's edge, in % of the hair's pixels;
+- through: pixels where skin lies up to 5 mm before hair, more than 4 mm from its edge, in % of its pixels;
   the worst of 12 views around the head.
 - before: in the picture's view, cells of 1 mm of hair where the head lies more than 1 mm before it, in %, the worst of
   the rig's expressions and the presets.

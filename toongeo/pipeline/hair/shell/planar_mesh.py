@@ -20,6 +20,7 @@ Mask = NDArray[np.bool_]
 
 STEP_MM, GRID_MM = 2.8, 7.5  # spacing along outlines, and between the points inside
 RINGS_MM = (1.5, 4.5)  # inside outlines: rows of points, without which a shell that turns there is a washboard
+FOLD_MM = (-2.0, -5.0)  # outside a part: rows where the shell folds away from it
 _CLOSE_MM = 1.6  # nearer to another outline an outline adds nothing
 _SOFT, _EPSILON = 0.8, 0.35  # cells: what smooths an outline, and what it may be off by
 _SHORTEST_MM = 0.3  # pieces of outlines below this are not split any more
@@ -123,7 +124,7 @@ def _inner_points(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask], taken
     distances = [signed(mask) for mask in (whole, *parts)]
     for distance in distances:
         soft = cv2.GaussianBlur(distance, (0, 0), 1.5)
-        for level in RINGS_MM if distance is distances[0] else (*RINGS_MM, -RINGS_MM[0] - 0.5):
+        for level in RINGS_MM if distance is distances[0] else (*RINGS_MM, *FOLD_MM):
             for contour in find_contours(soft, level):
                 row = _even(plane.points(contour[:, ::-1]))
                 row = row[plane.sample(distances[0], row) > 1.0]

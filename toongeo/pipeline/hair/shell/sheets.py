@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from toongeo.pipeline.hair.shell.edges import boundary_edges
-from toongeo.pipeline.hair.shell.faired import faired
 from toongeo.pipeline.hair.shell.harmonic import smooth_max, solved
 from toongeo.pipeline.hair.shell.regions import HeadRaster
 from toongeo.pipeline.hair.shell.sheet_rasters import SheetMaps, SheetRasters
@@ -24,7 +23,7 @@ _SOFT_MM = 5.0  # over which one surface goes over into another
 _SLOPE = 0.5  # by which hair gets thicker away from its line on the skin
 _FULL = (0.5, 1.2)  # of the back against a sphere
 _SHEET_MM = (0.8, 6.0)  # thickness of hair where only one side of it is seen: at the edge, and away from it
-_KEPT = 0.6  # of the thickness is left where the surface is smoothed
+_FOLD_MM, _FOLD_WITHIN_MM = 3.0, 3.2  # the edge of a fringe is rounded over this
 _ROUNDS = 30  # passes that smooth the depth of the rim
 
 
@@ -76,9 +75,20 @@ def sheets(P: Floats, T: Ints, rasters: SheetRasters) -> Sheets:
     sheet = np.minimum(_SHEET_MM[0] + _SLOPE * apart, _SHEET_MM[1])
     z_back = np.where(back.used, z_back, z_front - sheet)
     hidden = np.minimum(z_back + sheet, np.maximum(maps.under, z_back + 0.5))
-    z_front = np.where(front.used, z_front, hidden)
+    z_front = np.where(front.used, z_front, np.maximum(hidden, _lip(P, z_front, front, maps)))
     z_back = np.minimum(z_back, z_front - np.minimum(0.4 + 0.3 * apart, 2.0))
     return Sheets(P, T, np.where(rim, rim_z, z_front), np.where(rim, rim_z, z_back), *shown)
+
+
+def _lip(P: Floats, z: Floats, front: _Sheet, maps: SheetMaps) -> Floats:
+    """Depth (n,) of the first row beside the hairline, where the shell folds under the skin; -inf farther off.
+
+    From there it falls to the back of the head: one fall all the way would be so large that it alone shaded the line.
+    """
+    line = np.flatnonzero(front.border)
+    away, nearest = cKDTree(P[line]).query(P)
+    folded = np.minimum(z[line][nearest] - _FOLD_MM, np.where(maps.on_head, maps.under, np.inf))
+    return np.where(away < _FOLD_WITHIN_MM, folded, -np.inf)
 
 
 def _sheet(T: Ints, n: int) -> _Sheet:
@@ -134,8 +144,7 @@ def _front(
     z = smooth_max(base + _PUFF * root, ball + pull, width)
     away = _distance(P, front.border & ~joined)
     thick = _LIP_MM + np.minimum(_SLOPE * away, rasters.thickness)
-    z = np.where(line, depth, smooth_max(z, maps.front_floor + thick, width))
-    return faired(P, front.triangles, z, front.used & ~line, maps.front_floor + _KEPT * thick, np.full(n, np.inf))
+    return np.where(line, depth, smooth_max(z, maps.front_floor + thick, width))
 
 
 def _back(P: Floats, back: _Sheet, rasters: SheetRasters, maps: SheetMaps, rim: Mask, depth: Floats) -> Floats:
@@ -154,8 +163,7 @@ def _back(P: Floats, back: _Sheet, rasters: SheetRasters, maps: SheetMaps, rim: 
     away = _distance(P, rim & ~hem)
     thick = 0.5 + np.minimum(0.4 * away, rasters.thickness)
     z = -smooth_max(fullness * root - base, thick - maps.back_floor, width)
-    z = np.where(known, values[:, 0], z)
-    return faired(P, back.triangles, z, back.used & ~known, np.full(n, -np.inf), maps.back_floor - _KEPT * thick)
+    return np.where(known, values[:, 0], z)
 
 
 def _distance(P: Floats, marked: Mask) -> Floats:

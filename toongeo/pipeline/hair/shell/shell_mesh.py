@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
 from toongeo.pipeline.hair.shell.edges import boundary_edges, edges_of, halved
+from toongeo.pipeline.hair.shell.faired import faired
 from toongeo.pipeline.hair.shell.planar_mesh import planar_mesh
 from toongeo.pipeline.hair.shell.regions import HeadRaster, Regions
 from toongeo.pipeline.hair.shell.sheet_rasters import SheetRasters
@@ -55,7 +56,8 @@ def shell_mesh(plane: WorkingPlane, parts: Regions, head: HeadRaster) -> ShellMe
             break
         P, T = halved(P, T, long)
     P, T = halved(P, T, _chords(T))
-    return _joined(sheets(P, T, rasters))
+    both = sheets(P, T, rasters)
+    return _joined(both, *faired(both, rasters))
 
 
 def _long_edges(both: Sheets) -> NDArray[np.bool_]:
@@ -79,16 +81,14 @@ def _chords(T: Ints) -> NDArray[np.bool_]:
     return rim[edges].all(1) & (count == 2)
 
 
-def _joined(both: Sheets) -> ShellMesh:
+def _joined(both: Sheets, front_points: Floats, back_points: Floats) -> ShellMesh:
     n, T = len(both.points), both.triangles
     rim = np.zeros(n, bool)
     rim[boundary_edges(T)] = True
     inner = np.flatnonzero(~rim)
     behind = np.arange(n)
     behind[inner] = n + np.arange(len(inner))
-    vertices = np.vstack(
-        [np.column_stack([both.points, both.front]), np.column_stack([both.points[inner], both.back[inner]])]
-    )
+    vertices = np.vstack([front_points, back_points[inner]])
     faces = np.vstack([T, behind[T][:, [0, 2, 1]]])
     front = np.arange(len(faces)) < len(T)
     return ShellMesh(vertices, faces, front, np.r_[both.front_shown, both.back_shown])
