@@ -22,6 +22,7 @@ from toongeo.pipeline.rig.rig import Rig
 
 __all__ = ["build_hair"]
 
+_STRANDS, _LONG_MM = 1.25, 300.0  # texels per mm of strands behind, and so long they are: farther down they come again
 _FINEST = 2.5  # texels per mm; more is more than a file of an avatar should hold
 
 
@@ -63,7 +64,9 @@ def build_hair(img: NDArray[np.uint8], face: AlignedFace, rig: Rig, mask: NDArra
     inside = signed(parts.front)
     colours = picture_colours(plane, img, inside, _to_rim(parts), density)
     frame = _strand_frame(face)
-    texture, uv, uv_faces = hair_texture(plane, mesh, colours, frame, strands(colours, frame.radius))
+    lowest = float(frame.at(plane.back(mesh.vertices))[1].max())
+    drawn = strands(colours, (min(lowest, _LONG_MM), frame.breadth), _STRANDS)
+    texture, uv, uv_faces = hair_texture(plane, mesh, colours, frame, drawn)
     vertices = plane.back(mesh.vertices).astype(np.float32).astype(np.float64)
     return Hair(vertices, mesh.faces, uv.astype(np.float32).astype(np.float64), uv_faces, texture)
 

@@ -15,6 +15,8 @@ __all__ = ["hair_texture"]
 
 Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
+_UNSEEN = 1.25  # texels per mm where the picture shows nothing
+_BEHIND = (-0.2, 0.5)  # cosines away from the viewer between which lights of the picture fade
 _TURNED = (0.3, 0.6)  # cosines to the viewer between which the picture takes over from strands
 
 
@@ -23,10 +25,10 @@ def hair_texture(
 ) -> tuple[NDArray[np.uint8], Floats, Ints]:
     """Atlas (H, W, 3) uint8, coordinates (t, 2) and corners (m, 3) into them.
 
-    ``strands`` (along, across, 3) is what strands add to the colours, a row a mm along them, periodic across.
+    ``strands`` (along, across, 3) is what strands add to the colours, on the whole breadth of the frame's map.
     """
     density = 1.0 / colours.cell_mm
-    found = panels(mesh, density, min(density, 1.25))
+    found = panels(mesh, density, _UNSEEN)
     pictures, corners = [], np.zeros_like(mesh.faces)
     places = []
     count = left = 0
@@ -58,18 +60,23 @@ def _colours(
 ) -> NDArray[np.float32]:
     """Colours (k, 3) of texels."""
     at = ((inside.points[:, :2] - plane.low) / colours.cell_mm).T[::-1]
-    drawn, broad = (_sampled(layer, at) for layer in (colours.drawn, colours.broad))
+    drawn, broad, plain = (_sampled(layer, at) for layer in (colours.drawn, colours.broad, colours.plain))
     across, along = frame.at(plane.back(inside.points))
-    period = strands.shape[1]
-    turns = 2 * np.pi * frame.radius
-    detail = _sampled(strands, np.array([along, np.mod(across / turns, 1.0) * period]), wrap=True)
+    per_mm = strands.shape[1] / frame.breadth
+    detail = _sampled(strands, np.array([along, across]) * per_mm, reflect=True)
     seen = (mesh.front & mesh.shown)[inside.triangle] | ~mesh.shown[inside.triangle]
-    share = np.clip((inside.normals[:, 2] - _TURNED[0]) / (_TURNED[1] - _TURNED[0]), 0, 1)
-    share = (share * share * (3 - 2 * share) * seen).astype(np.float32)[:, None]
-    return np.asarray(share * drawn + (1 - share) * (broad + detail), np.float32)
+    behind = _ramp(-inside.normals[:, 2], *_BEHIND)
+    share = _ramp(inside.normals[:, 2], *_TURNED) * seen[:, None]
+    return np.asarray(share * drawn + (1 - share) * (broad + behind * (plain - broad) + detail), np.float32)
 
 
-def _sampled(layer: NDArray[np.float32], at: Floats, *, wrap: bool = False) -> NDArray[np.float32]:
-    mode = "grid-wrap" if wrap else "nearest"
+def _ramp(values: Floats, low: float, high: float) -> NDArray[np.float32]:
+    """0 (k, 1) below, 1 above, smooth in between."""
+    t = np.clip((values - low) / (high - low), 0, 1)
+    return np.asarray(t * t * (3 - 2 * t), np.float32)[:, None]
+
+
+def _sampled(layer: NDArray[np.float32], at: Floats, *, reflect: bool = False) -> NDArray[np.float32]:
+    mode = "mirror" if reflect else "nearest"
     channels = [map_coordinates(layer[..., k], at, order=1, mode=mode) for k in range(layer.shape[2])]
     return np.stack(channels, axis=1)

@@ -19,7 +19,9 @@ _EDGE_MM = 0.8  # along the hair's edge the picture is mixed with what is beside
 _RARE = 0.0015  # of the hair: colours that are rarer are of something else
 _OUTLINES_MM = np.arange(1.0, 7.0, 0.5)  # breadths of drawn outlines that are looked for
 _DARKER = 0.6  # of the hair's lightness: a drawn outline is below
+_STROKE_MM = 4.0  # half the window of a median that removes strokes
 _BROAD_MM = 6.0  # what of the picture is its shading; the rest is strands
+_PLAIN_MM = 25.0  # what is no light on one place
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +34,8 @@ class PictureColours:
         The picture where it shows hair, elsewhere continued from the nearest hair.
     broad : (h, w, 3) float32
         Without strands, continued smoothly.
+    plain : (h, w, 3) float32
+        The same without lights and shades, for what lies behind.
     known : (h, w) bool
         Where the picture shows hair well.
     inside : (h, w) float32, mm
@@ -41,6 +45,7 @@ class PictureColours:
 
     drawn: NDArray[np.float32]
     broad: NDArray[np.float32]
+    plain: NDArray[np.float32]
     known: Mask
     inside: NDArray[np.float32]
     cell_mm: float
@@ -75,8 +80,13 @@ def picture_colours(
     drawn = nearest_set(picture, known)
     soft = cv2.GaussianBlur(drawn, (0, 0), 1.5 * density)
     drawn = np.where(known[..., None], picture, soft)
-    broad = _pushed(picture, known & (deep > 2.0) if (known & (deep > 2.0)).any() else known, _BROAD_MM * density)
-    return PictureColours(drawn.astype(np.float32), broad, known, deep, cell)
+    pure = known & (deep > max(2.0, 2.0 * cell))  # beside the skin the picture mixes both
+    pure = pure if pure.any() else known
+    # The median leaves the ground between strokes, where the mean would leave their shadow.
+    window = 2 * max(1, round(_STROKE_MM * density)) + 1
+    ground = np.asarray(cv2.medianBlur(drawn, window), np.uint8)
+    broad, plain = (_pushed(ground, pure, sigma * density) for sigma in (_BROAD_MM, _PLAIN_MM))
+    return PictureColours(drawn.astype(np.float32), broad, plain, known, deep, cell)
 
 
 def _resampled(layer: Floats, shape: tuple[int, int], cell: float) -> NDArray[np.float32]:

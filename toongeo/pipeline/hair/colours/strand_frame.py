@@ -8,12 +8,15 @@ from numpy.typing import NDArray
 __all__ = ["StrandFrame"]
 
 Floats = NDArray[np.floating]
-_WHORL = np.deg2rad(30.0)  # by which the whorl lies behind the top of the head
+_WHORL = np.deg2rad(20.0)  # by which the highest point of the hair's flow lies behind the top of the head
 
 
 @dataclass(frozen=True, eq=False)
 class StrandFrame:
-    """Strands run from the whorl over a sphere down to its equator, then straight down.
+    """A map of the head on which strands are upright lines: sinusoidal over a sphere, then straight down.
+
+    Nothing is squeezed at the crown, where lines run from the forehead backwards; the map's cut lies in front, where
+    the picture is.
 
     Attributes
     ----------
@@ -24,12 +27,17 @@ class StrandFrame:
     centre: Floats
     radius: float
 
+    @property
+    def breadth(self) -> float:
+        """mm across the map."""
+        return 2 * np.pi * self.radius
+
     def at(self, points: Floats) -> tuple[Floats, Floats]:
-        """Way around the head and way from the whorl (n,), mm, of points (n, 3) in the model frame."""
+        """Place across the map and way down from the crown (n,), mm, of points (n, 3) in the model frame."""
         c, s = np.cos(_WHORL), np.sin(_WHORL)
         x, y, z = (points - self.centre).T
-        up, ahead = c * y - s * z, s * y + c * z
-        across = np.arctan2(x, ahead) * self.radius
-        out = np.hypot(x, ahead)
-        along = np.where(up > 0, self.radius * np.arctan2(out, np.maximum(up, 1e-9)), self.radius * np.pi / 2 - up)
-        return across, along
+        up, behind = c * y - s * z, -(s * y + c * z)
+        out = np.hypot(x, behind)
+        polar = np.where(up > 0, np.arctan2(out, np.maximum(up, 1e-9)), np.pi / 2)
+        across = self.radius * (np.arctan2(x, behind) * np.sin(polar) + np.pi)
+        return across, self.radius * polar - np.minimum(up, 0)

@@ -1,25 +1,24 @@
 """What strands add to the colour of hair that no picture shows."""
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.pipeline.hair.colours.picture_colours import PictureColours
+from toongeo.pipeline.hair.colours.quilted import quilted
+from toongeo.pipeline.hair.colours.strand_patches import strand_patches
 
 __all__ = ["strands"]
 
-_LONG = 420  # mm along the strands: from the whorl to the waist
+_OVERLAP = 0.3  # of a patch's side
 
 
-def strands(colours: PictureColours, radius: float) -> NDArray[np.float32]:
-    """Differences of colour (along, across, 3), a row and a column a mm, periodic across."""
-    across = max(8, round(2 * np.pi * radius))
+def strands(colours: PictureColours, size_mm: tuple[float, float], per_mm: float) -> NDArray[np.float32]:
+    """Differences of colour (rows, columns, 3), strands running down, of so many mm along and across them.
+
+    The strands of the picture go on: its own patches, turned along the flow and quilted. The same picture gives the
+    same strands.
+    """
     rng = np.random.default_rng(0)
-    noise = np.asarray(rng.standard_normal((_LONG // 4, across)), np.float32)
-    smooth = cv2.GaussianBlur(np.hstack([noise] * 3), (0, 0), sigmaX=0.6, sigmaY=4.0)[:, across : 2 * across]
-    fine = cv2.resize(smooth, (across, _LONG), interpolation=cv2.INTER_LINEAR)
-    deep = colours.known & (colours.inside > 4)
-    deep = deep if deep.any() else colours.known
-    rest = (colours.drawn - colours.broad)[deep]
-    contrast = np.clip(1.25 * np.median(np.abs(rest.mean(1))), 0, 25)
-    return np.asarray(np.repeat((fine / fine.std() * contrast)[..., None], 3, 2), np.float32)
+    patches = strand_patches(colours, per_mm, rng)
+    shape = (round(size_mm[0] * per_mm), round(size_mm[1] * per_mm))
+    return quilted(patches, shape, max(2, round(_OVERLAP * patches.shape[1])), rng)

@@ -49,28 +49,23 @@ def shell_mesh(plane: WorkingPlane, parts: Regions, head: HeadRaster) -> ShellMe
     """
     rasters = SheetRasters(plane, parts, head)
     P, T = planar_mesh(plane, parts.whole, (parts.front, parts.back))
-    for _ in range(3):
-        both = sheets(P, T, rasters)
-        long = _long_edges(both)
-        if not long.any() or len(T) + 2 * long.sum() > _MOST:
-            break
-        P, T = halved(P, T, long)
+    P, T = halved(P, T, _long_edges(sheets(P, T, rasters), (_MOST - len(T)) // 2))
     P, T = halved(P, T, _chords(T))
     both = sheets(P, T, rasters)
     return _joined(both, *faired(both, rasters))
 
 
-def _long_edges(both: Sheets) -> NDArray[np.bool_]:
-    """Edges (of ``edges_of``) of shown triangles that are long on either sheet, and the longest of their triangle."""
+def _long_edges(both: Sheets, most: int) -> NDArray[np.bool_]:
+    """Edges (of ``edges_of``) of shown triangles that are long on either sheet; the longest, at most so many."""
     edges, number, _ = edges_of(both.triangles)
-    split = np.zeros(len(edges), bool)
+    longest = np.zeros(len(edges))
     for z, shown in ((both.front, both.front_shown), (both.back, both.back_shown)):
         X = np.column_stack([both.points, z])
         length = np.linalg.norm(X[edges[:, 0]] - X[edges[:, 1]], axis=1)
-        at = length[number]
-        longest = number[np.arange(len(number)), at.argmax(1)]
-        split[longest[shown & (at.max(1) > _LONGEST_MM)]] = True
-    return split
+        seen = np.unique(number[shown])
+        longest[seen] = np.maximum(longest[seen], length[seen])
+    bound = np.sort(longest)[-min(max(most, 1), len(longest))]
+    return longest > max(bound, _LONGEST_MM)
 
 
 def _chords(T: Ints) -> NDArray[np.bool_]:

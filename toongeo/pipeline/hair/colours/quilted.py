@@ -1,0 +1,76 @@
+"""A large texture from small patches."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["quilted"]
+
+Floats = NDArray[np.floating]
+_TOLERANCE = 0.2  # over the best patch's error: one of those that are no worse is taken, so that none comes in a row
+
+
+def quilted(
+    patches: NDArray[np.float32], shape: tuple[int, int], overlap: int, rng: np.random.Generator
+) -> NDArray[np.float32]:
+    """Image quilting (Efros and Freeman 2001): patches side by side, cut where they differ least.
+
+    Parameters
+    ----------
+    patches : (k, b, b, c) float32
+    shape : (rows, columns)
+        Of the texture.
+    overlap : int
+        Pixels by which neighbours overlap, below b.
+    rng : Generator
+        Chooses among patches that fit about as well.
+
+    Returns
+    -------
+    (rows, columns, c) float32
+
+    Examples
+    --------
+    >>> one = np.ones((1, 6, 6, 1), np.float32)
+    >>> texture = quilted(one, (10, 17), 2, np.random.default_rng(0))
+    >>> texture.shape, float(texture.min())
+    ((10, 17, 1), 1.0)
+    """
+    side, step = patches.shape[1], patches.shape[1] - overlap
+    rows, columns = (-(-(n - overlap) // step) for n in shape)
+    texture = np.zeros((rows * step + overlap, columns * step + overlap, patches.shape[3]), np.float32)
+    for i in range(rows):
+        for j in range(columns):
+            place = texture[i * step : i * step + side, j * step : j * step + side]
+            errors = np.zeros(len(patches))
+            if i:
+                errors += ((patches[:, :overlap] - place[:overlap]) ** 2).sum((1, 2, 3))
+            if j:
+                errors += ((patches[:, :, :overlap] - place[:, :overlap]) ** 2).sum((1, 2, 3))
+            chosen = patches[rng.choice(np.flatnonzero(errors <= (1 + _TOLERANCE) * errors.min() + 1e-6))]
+            kept = np.zeros((side, side), bool)  # of what is there already
+            if i:
+                difference = ((chosen[:overlap] - place[:overlap]) ** 2).sum(2)
+                kept[:overlap] |= np.arange(overlap)[:, None] < _cut(difference.T)
+            if j:
+                difference = ((chosen[:, :overlap] - place[:, :overlap]) ** 2).sum(2)
+                kept[:, :overlap] |= np.arange(overlap) < _cut(difference)[:, None]
+            place[~kept] = chosen[~kept]
+    return texture[: shape[0], : shape[1]]
+
+
+def _cut(difference: Floats) -> NDArray[np.int64]:
+    """Column in each row of the path from the first row to the last along which the sum is least."""
+    rows, columns = difference.shape
+    total = np.full((rows, columns + 2), np.inf)
+    total[:, 1:-1] = difference
+    least = np.empty(columns)
+    for row in range(1, rows):
+        above = total[row - 1]
+        np.minimum(above[:-2], above[1:-1], out=least)
+        np.minimum(least, above[2:], out=least)
+        total[row, 1:-1] += least
+    path, sums = [int(total[-1].argmin())], total.tolist()
+    for row in range(rows - 2, -1, -1):
+        near = sums[row][path[-1] - 1 : path[-1] + 2]
+        path.append(path[-1] - 1 + near.index(min(near)))
+    return np.array(path[::-1]) - 1
