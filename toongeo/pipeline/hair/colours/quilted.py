@@ -6,7 +6,9 @@ from numpy.typing import NDArray
 __all__ = ["quilted"]
 
 Floats = NDArray[np.floating]
-_TOLERANCE = 0.2  # over the best patch's error: one of those that are no worse is taken, so that none comes in a row
+# A patch is taken whose error is above the best one's by at most so much of that, and of the median: with less, the
+# plainest patch beside itself always fits best.
+_TOLERANCE, _SPREAD = 0.2, 0.1
 
 
 def quilted(
@@ -46,7 +48,8 @@ def quilted(
                 errors += ((patches[:, :overlap] - place[:overlap]) ** 2).sum((1, 2, 3))
             if j:
                 errors += ((patches[:, :, :overlap] - place[:, :overlap]) ** 2).sum((1, 2, 3))
-            chosen = patches[rng.choice(np.flatnonzero(errors <= (1 + _TOLERANCE) * errors.min() + 1e-6))]
+            bound = errors.min() + _TOLERANCE * errors.min() + _SPREAD * np.median(errors)
+            chosen = patches[rng.choice(np.flatnonzero(errors <= bound))]
             kept = np.zeros((side, side), bool)  # of what is there already
             if i:
                 difference = ((chosen[:overlap] - place[:overlap]) ** 2).sum(2)

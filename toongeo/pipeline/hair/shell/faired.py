@@ -1,5 +1,7 @@
 """The shell smoothed as a surface in space."""
 
+from dataclasses import replace
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
@@ -19,13 +21,14 @@ _FLOOR_MM2 = 1.0  # added to squared lengths of edges, so that none counts for a
 _THICK_MM = (4.0, 12.0)  # of a shell whose points may leave their place in the plane: thin strands keep it
 _FLATTENED = 0.2  # of a triangle's area in the plane is left at least
 _CLEAR_MM = 1.0  # of hair over what the skin reaches
+_APART_MM = 1.5  # between the sheets, unless they were nearer before
 
 
-def faired(both: Sheets, rasters: SheetRasters) -> tuple[Floats, Floats]:
-    """Points (n, 3) of the front and of the back whose walls no longer repeat every notch of the outline.
+def faired(both: Sheets, rasters: SheetRasters) -> Sheets:
+    """The sheets, whose walls no longer repeat every notch of the outline.
 
-    The rim moves in depth only, which keeps the silhouette; lines on the skin and what is hidden stay. No triangle
-    turns over in the plane, so that each sheet remains one over it.
+    The rim moves in depth only, which keeps the silhouette; lines on the skin stay. Points move in the plane for both
+    sheets alike, and no triangle turns over there, so that both remain heights over the same triangles.
     """
     P, T = both.points, both.triangles
     n = len(P)
@@ -33,30 +36,30 @@ def faired(both: Sheets, rasters: SheetRasters) -> tuple[Floats, Floats]:
     rim[boundary_edges(T)] = True
     behind = np.where(rim, np.arange(n), n + np.arange(n))
     X = np.vstack([np.column_stack([P, both.front]), np.column_stack([P, both.back])])
-    free_front, free_back = (_inner(T, shown, rim) for shown in (both.front_shown, both.back_shown))
-    turning = rim & _inner(T, both.front_shown, ~rim) & _inner(T, both.back_shown, ~rim)
-    free = np.r_[free_front | turning, free_back]
-    loose = np.clip((both.front - both.back - _THICK_MM[0]) / (_THICK_MM[1] - _THICK_MM[0]), 0, 1) * ~rim
-    ways = np.column_stack([np.tile(loose, 2), np.tile(loose, 2), np.ones(2 * n)])
-    faces = np.vstack([T, behind[T]])
-    W, rows = _means(X, faces, np.flatnonzero(free))
-    area = _areas(X, faces)
+    free = [_inner(T, shown, rim) for shown in (both.front_shown, both.back_shown)]
+    turning = _inner(T, both.front_shown, ~rim) & _inner(T, both.back_shown, ~rim)
+    loose = np.clip((both.front - both.back - _THICK_MM[0]) / (_THICK_MM[1] - _THICK_MM[0]), 0, 1)
+    share = loose * (free[0] | free[1]) / np.maximum(free[0].astype(float) + free[1], 1.0)
+    W, rows = _means(X, np.vstack([T, behind[T]]), np.flatnonzero(np.r_[free[0] | turning, free[1]]))
+    area = _areas(P, T)
     for _ in range(_ROUNDS):
-        before = X[rows].copy()
+        before = X[:n, :2].copy()
         for step in (_SHRINK, _SWELL):
-            X[rows] += step * (W @ X - X[rows]) * ways[rows]
-        turned = np.zeros(2 * n, bool)
-        turned[faces[_areas(X, faces) < _FLATTENED * area]] = True
-        X[rows] = np.where(turned[rows, None], before, X[rows])
-    return _clear(X[:n], X[behind], both, rasters)
+            way = np.zeros_like(X)
+            way[rows] = step * (W @ X - X[rows])
+            X[:, 2] += way[:, 2]
+            moved = X[:n, :2] + share[:, None] * (way[:n, :2] * free[0][:, None] + way[n:, :2] * free[1][:, None])
+            X[:n, :2] = X[n:, :2] = moved
+        turned = np.zeros(n, bool)
+        turned[T[_areas(X[:n, :2], T) < _FLATTENED * area]] = True
+        X[:n, :2] = X[n:, :2] = np.where(turned[:, None], before, X[:n, :2])
+    return _clear(both, X[:n, :2], X[:n, 2], X[behind, 2], rasters)
 
 
 def _inner(T: Ints, shown: Mask, without: Mask) -> Mask:
     """Vertices (n,) all of whose triangles are shown, but for some."""
-    inner = np.zeros(len(without), bool)
-    inner[T[shown]] = True
-    inner[T[~shown]] = False
-    return inner & ~without
+    n = len(without)
+    return _touched(T[shown], n) & ~_touched(T[~shown], n) & ~without
 
 
 def _means(X: Floats, faces: Ints, rows: Ints) -> tuple[sp.csr_array, Ints]:
@@ -67,26 +70,27 @@ def _means(X: Floats, faces: Ints, rows: Ints) -> tuple[sp.csr_array, Ints]:
     return sp.diags_array(1 / np.asarray(W.sum(1)).ravel()) @ W, rows
 
 
-def _areas(X: Floats, faces: Ints) -> Floats:
+def _areas(P: Floats, T: Ints) -> Floats:
     """Twice the areas in the plane."""
-    u, v = X[faces[:, 1], :2] - X[faces[:, 0], :2], X[faces[:, 2], :2] - X[faces[:, 0], :2]
+    u, v = P[T[:, 1]] - P[T[:, 0]], P[T[:, 2]] - P[T[:, 0]]
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
 
 
-def _clear(front: Floats, back: Floats, both: Sheets, rasters: SheetRasters) -> tuple[Floats, Floats]:
-    """Both sheets clear of the head, and of each other as before."""
+def _clear(both: Sheets, P: Floats, front: Floats, back: Floats, rasters: SheetRasters) -> Sheets:
+    """The sheets at new places, clear of the head, and as far apart as they were where one only lines the other."""
     gap = both.front - both.back
-    n = len(gap)
-    for X, shown, side in ((front, both.front_shown, 1), (back, both.back_shown, -1)):
-        inner = _inner(both.triangles, shown, gap <= 0)
-        maps = rasters.at(X[:, :2])
-        floor = maps.front_floor + _CLEAR_MM if side > 0 else maps.back_floor - _CLEAR_MM
-        X[:, 2] = np.where(inner, side * np.maximum(side * X[:, 2], side * floor), X[:, 2])
-    seen = [np.zeros(n, bool), np.zeros(n, bool)]
-    for mask, shown in zip(seen, (both.front_shown, both.back_shown), strict=True):
-        mask[both.triangles[shown]] = True
-    # What lines the other sheet follows it.
-    front[~seen[0], 2] = np.minimum(front[~seen[0], 2], (back[:, 2] + gap)[~seen[0]])
-    back[~seen[1], 2] = np.maximum(back[~seen[1], 2], (front[:, 2] - gap)[~seen[1]])
-    back[:, 2] = np.minimum(back[:, 2], front[:, 2] - np.minimum(gap, 1.5))
-    return front, back
+    maps = rasters.at(P)
+    inner = [_inner(both.triangles, shown, gap <= 0) for shown in (both.front_shown, both.back_shown)]
+    front = np.where(inner[0], np.maximum(front, maps.front_floor + _CLEAR_MM), front)
+    back = np.where(inner[1], np.minimum(back, maps.back_floor - _CLEAR_MM), back)
+    front_seen, back_seen = (_touched(both.triangles[rows], len(P)) for rows in (both.front_shown, both.back_shown))
+    front = np.where(front_seen, front, np.minimum(front, back + gap))
+    back = np.where(back_seen, back, np.maximum(back, front - gap))
+    back = np.minimum(back, front - np.minimum(gap, _APART_MM))
+    return replace(both, points=P, front=front, back=back)
+
+
+def _touched(T: Ints, n: int) -> Mask:
+    touched = np.zeros(n, bool)
+    touched[T] = True
+    return touched

@@ -51,8 +51,7 @@ def shell_mesh(plane: WorkingPlane, parts: Regions, head: HeadRaster) -> ShellMe
     P, T = planar_mesh(plane, parts.whole, (parts.front, parts.back))
     P, T = halved(P, T, _long_edges(sheets(P, T, rasters), (_MOST - len(T)) // 2))
     P, T = halved(P, T, _chords(T))
-    both = sheets(P, T, rasters)
-    return _joined(both, *faired(both, rasters))
+    return _joined(faired(sheets(P, T, rasters), rasters))
 
 
 def _long_edges(both: Sheets, most: int) -> NDArray[np.bool_]:
@@ -76,14 +75,14 @@ def _chords(T: Ints) -> NDArray[np.bool_]:
     return rim[edges].all(1) & (count == 2)
 
 
-def _joined(both: Sheets, front_points: Floats, back_points: Floats) -> ShellMesh:
+def _joined(both: Sheets) -> ShellMesh:
     n, T = len(both.points), both.triangles
     rim = np.zeros(n, bool)
     rim[boundary_edges(T)] = True
     inner = np.flatnonzero(~rim)
     behind = np.arange(n)
     behind[inner] = n + np.arange(len(inner))
-    vertices = np.vstack([front_points, back_points[inner]])
+    front, back = (np.column_stack([both.points, z]) for z in (both.front, both.back))
+    vertices = np.vstack([front, back[inner]])
     faces = np.vstack([T, behind[T][:, [0, 2, 1]]])
-    front = np.arange(len(faces)) < len(T)
-    return ShellMesh(vertices, faces, front, np.r_[both.front_shown, both.back_shown])
+    return ShellMesh(vertices, faces, np.arange(len(faces)) < len(T), np.r_[both.front_shown, both.back_shown])
