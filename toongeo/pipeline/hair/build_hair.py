@@ -58,7 +58,7 @@ def build_hair(img: NDArray[np.uint8], face: AlignedFace, rig: Rig, mask: NDArra
     if not raster.hair.any():
         raise ValueError("mask: expected hair on the head, got none near it")
     head = head_raster(face, plane, skin_reach(face, rig))
-    parts = regions(face, raster, head)
+    parts = regions(face, plane, raster, head)
     mesh = shell_mesh(plane, parts, head)
     density = min(plane.scale, _FINEST)
     inside = signed(parts.front)

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
-from skimage.measure import find_contours
+from skimage.measure import find_contours, points_in_poly
 
 from toongeo.pipeline.hair.plane.masks import signed
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
@@ -67,7 +67,7 @@ def planar_mesh(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask]) -> tupl
     outline = _joined(lines)
     loose = _inner_points(plane, whole, parts, outline.points)
     P, T = _conforming(outline, loose)
-    inside = _within(plane, outer, P[T].mean(1))
+    inside = _within(outer, P[T].mean(1))
     used, T = np.unique(T[inside], return_inverse=True)
     return P[used], T.reshape(-1, 3)
 
@@ -173,10 +173,6 @@ def _conforming(outline: _Outlines, loose: Floats) -> tuple[Floats, Ints]:
     return P, T[np.abs(area) > 1e-6]
 
 
-def _within(plane: WorkingPlane, rings: list[Floats], points: Floats, fine: int = 4) -> Mask:
-    """Points (k,) within closed lines (even-odd), to a fraction of a mm."""
-    rows, columns = (int(n * CELL_MM * fine) + 2 for n in plane.shape)
-    canvas = np.zeros((rows, columns), np.uint8)
-    cv2.fillPoly(canvas, [np.rint((ring - plane.low) * fine * 16).astype(np.int32) for ring in rings], 1, shift=4)
-    x, y = np.rint((points - plane.low) * fine).astype(int).T
-    return canvas[np.clip(y, 0, rows - 1), np.clip(x, 0, columns - 1)] > 0
+def _within(rings: list[Floats], points: Floats) -> Mask:
+    """Points (k,) within closed lines (even-odd)."""
+    return np.asarray(np.logical_xor.reduce([points_in_poly(points, ring) for ring in rings]))

@@ -20,6 +20,8 @@ Floats = NDArray[np.floating]
 
 CLEAR_MM = 2.0  # between skin, in all expressions, and hair
 _AROUND_MM = 3.0  # by which hair behind the head is larger than the scalp, where the face or ears hide it
+_GAP_MM = 10.0  # between scalp and hair behind the neck, or in that: below, none
+_TOUCH_MM = 8.0  # breadth of the overlap with the outline of a head, where the fit may be off by so much
 _SLIVER_MM = 1.25  # half the breadth of what is no gap between front and back
 _CALM_MM = 1.0  # smooths the hairline; not the outer outline, whose corners are drawn
 _TURNED = 12.0  # degrees of yaw beyond which one side of the hair is hidden
@@ -63,12 +65,22 @@ class HeadRaster:
 
 @dataclass(frozen=True, eq=False)
 class Regions:
-    """Cells (rows, columns) bool where hair shows from the front and from behind; ``hanging``: between strands that
-    hang on both sides of the neck, behind it."""
+    """Cells (rows, columns) bool of hair.
+
+    Attributes
+    ----------
+    front, back
+        Where hair shows from the front and from behind.
+    hanging
+        Between strands that hang on both sides of the neck, behind it.
+    over_skin
+        Where hair of the front lies on the head, and does not come from behind it.
+    """
 
     front: Mask
     back: Mask
     hanging: Mask
+    over_skin: Mask
 
     @property
     def whole(self) -> Mask:
@@ -95,20 +107,32 @@ def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Floats) -> HeadRa
     )
 
 
-def regions(face: AlignedFace, raster: HairRaster, head: HeadRaster) -> Regions:
+def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: HeadRaster) -> Regions:
     """Front: the hair of the picture. Back: behind the scalp, behind hair beside the head, and between strands."""
     front = raster.hair
     hanging = _between_strands(face, front, head)
     back = head.crown | (dilated(head.crown, _AROUND_MM) & (eroded(head.head, CELL_MM) | front))
     back |= (front & ~head.aired) | hanging
-    back = without_holes(closed(back, 2.0) & (front | head.head))
+    back = without_holes(closed(back, _GAP_MM) & (front | head.head))
     back = large_pieces(back, 0.02)
     whole = front | back
     calm = cv2.GaussianBlur(front.astype(np.float32), (0, 0), _CALM_MM / CELL_MM) > 0.5
     front = np.where(depth_inside(whole) > 4.0, calm, front)
     front = front | _slivers(whole & ~front, front)
     back = back | _slivers(whole & ~back, back)
-    return Regions(front, back, hanging)
+    return Regions(front, back, hanging, _over_skin(face, plane, front, head))
+
+
+def _over_skin(face: AlignedFace, plane: WorkingPlane, hair: Mask, head: HeadRaster) -> Mask:
+    """Hair before the head; on the far side of a turned head what touches its outline comes from behind, and so does
+    all that is below the brows: there the nose, of which a fit may fall short, stands before it."""
+    over = hair & head.head
+    if abs(face.camera.yaw) < _TURNED:
+        return over
+    column, row = plane.cells(plane.of(face.vertices[face.landmark_vertices[[27]]])[:, :2])[0]
+    far = np.sign(face.camera.yaw) * (np.arange(hair.shape[1]) - column) > 0
+    touching = ~opened(over, _TOUCH_MM / 2) & (depth_inside(head.head) < _TOUCH_MM)
+    return over & ~(far & (touching | (np.arange(len(hair)) < row)[:, None]))
 
 
 def _slivers(gap: Mask, region: Mask) -> Mask:

@@ -10,7 +10,7 @@ from scipy.ndimage import grey_erosion
 from toongeo.pipeline.hair.plane.depth_maps import ball_offset
 from toongeo.pipeline.hair.plane.masks import nearest_set, signed
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
-from toongeo.pipeline.hair.shell.regions import HeadRaster, Regions
+from toongeo.pipeline.hair.shell.regions import CLEAR_MM, HeadRaster, Regions
 
 __all__ = ["SheetMaps", "SheetRasters"]
 
@@ -51,7 +51,7 @@ class SheetRasters:
         """The maps at plane points (n, 2)."""
         depths = {name: self.plane.sample(raster, P) for name, raster in self._depths.items()}
         hanging, crown = (self.plane.sample(raster, P) for raster in self._distances[3:])
-        on_head = self.plane.sample(self.head.aired.astype(np.float64), P) > 0.5
+        on_head = self.plane.sample(self._aired.astype(np.float64), P) > 0.5
         return SheetMaps(**depths, on_head=on_head, hanging=(hanging > -2.5) & (crown < -2.5))
 
     def shown(self, centres: Floats) -> tuple[Mask, Mask]:
@@ -76,9 +76,18 @@ class SheetRasters:
             "on_skin": nearest_set(rolled, np.isfinite(rolled)),
             "behind_skin": nearest_set(head.back_off, head.aired),
             "under": nearest_set(low, np.isfinite(low) & head.head) - _UNDER_MM,
-            "front_floor": _falling(head.front_off, head.aired, -1),
+            "front_floor": _falling(self._front_off, self._aired, -1),
             "back_floor": _falling(head.back_off, head.aired, 1),
         }
+
+    @cached_property
+    def _front_off(self) -> Floats:
+        """The front of the skin that hair lies on, with air; -inf elsewhere."""
+        return ball_offset(np.where(self.parts.over_skin, self.head.front, -np.inf), CLEAR_MM)
+
+    @cached_property
+    def _aired(self) -> Mask:
+        return np.isfinite(self._front_off)
 
     @cached_property
     def _distances(self) -> list[Floats]:

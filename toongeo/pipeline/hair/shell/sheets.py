@@ -21,6 +21,7 @@ _LIP_MM = 1.5  # between skin and the edge of hair that lies on it
 _BALL, _PUFF = 0.95, 0.5  # fullness of the whole outline, and of a strand, against a sphere's
 _SOFT_MM = 5.0  # over which one surface goes over into another
 _SLOPE = 0.5  # by which hair gets thicker away from its line on the skin
+_RISE = 1.5  # slope, at most, of hair away from where it comes from behind the head
 _FULL = (0.5, 1.2)  # of the back against a sphere
 _SHEET_MM = (0.8, 6.0)  # thickness of hair where only one side of it is seen: at the edge, and away from it
 _FOLD_MM, _FOLD_WITHIN_MM = 3.0, 3.2  # the edge of a fringe is rounded over this
@@ -142,6 +143,10 @@ def _front(
     root = np.sqrt(np.maximum(bulge, 0))
     width = np.minimum(_SOFT_MM, root)
     z = smooth_max(base + _PUFF * root, ball + pull, width)
+    beside = front.border & ~joined & ~maps.on_head  # hair that comes from behind the neck or the far cheek
+    if beside.any():
+        far, nearest = cKDTree(P[beside]).query(P)
+        z = np.minimum(z, depth[beside][nearest] + _RISE * far)
     away = _distance(P, front.border & ~joined)
     thick = _LIP_MM + np.minimum(_SLOPE * away, rasters.thickness)
     return np.where(line, depth, smooth_max(z, maps.front_floor + thick, width))
