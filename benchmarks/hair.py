@@ -7,8 +7,8 @@ from the mask that the program finds, where it trusts it. Of each picture:
 - IoU: of the hair that is seen by the picture's camera with the mask by hand, and with the mask that it was built from.
 - silhouette: IoU of head and hair above the chin with the picture's (masks/NAME.png beside the picture, or else hair
   and what the parser takes for the head), painted -> shell.
-- through: pixels where skin lies up to 5 mm before hair, more than 4 mm from its edge, in % of its pixels;
-  the worst of 12 views around the head.
+- through: pixels where skin lies up to 5 mm before hair, in patches that do not touch the hair's edge or reach more
+  than 8 mm from it, in % of the hair's pixels; the worst of 12 views around the head.
 - before: in the picture's view, cells of 1 mm of hair where the head lies more than 1 mm before it, in %, the worst of
   the rig's expressions and the presets.
 - moved: by how much visible landmarks moved to make room, mm.
@@ -27,7 +27,6 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from scipy.spatial import cKDTree
 
 import toongeo as tg
 from toongeo.avatar import Avatar
@@ -39,7 +38,7 @@ from toongeo.protocols import Camera, FaceLabel
 from toongeo.render import Fragments, ScaledOrthographicCamera, interpolate, rasterize
 
 VIEWS, SIDE = 12, 320
-NEAR_MM, EDGE_MM, BEFORE_MM = 5.0, 4.0, 1.0
+NEAR_MM, EDGE_MM, BEFORE_MM = 5.0, 8.0, 1.0
 SIX = ("anger", "disgust", "fear", "sadness", "smile", "surprise")
 HEAD = [label for label in FaceLabel if label != FaceLabel.BACKGROUND]
 
@@ -79,13 +78,13 @@ def through(avatar: Avatar, hair: Hair) -> float:
         skin = drawn(camera, avatar.rig.neutral, F, (SIDE, SIDE))[1]
         bare = fragments.mask & (skin > front)
         shown = fragments.mask & ~bare
-        edge = bare & (cv2.dilate((fragments.mask & (skin > front + NEAR_MM)).astype(np.uint8), np.ones((3, 3))) > 0)
-        bad = bare & (skin < front + NEAR_MM)
-        # Hair that goes into the head at its edge is not skin that comes through: there, hair behind skin runs deeper.
-        deep = np.argwhere(edge | ~fragments.mask)
-        if bad.any() and len(deep):
-            away = cKDTree(deep).query(np.argwhere(bad))[0] * 400 / SIDE
-            worst = max(worst, 100 * float((away > EDGE_MM).sum()) / max(1, int(shown.sum())))
+        # Where hair ends it goes into the head, and skin lies before it, ever farther.
+        ended = ~fragments.mask | (skin > front + NEAR_MM)
+        _, pieces = cv2.connectedComponents((bare & (skin < front + NEAR_MM)).astype(np.uint8))
+        at_edge = np.isin(pieces, pieces[cv2.dilate(ended.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0])
+        away = cv2.distanceTransform((~ended).astype(np.uint8), cv2.DIST_L2, 5) * 400 / SIDE
+        bad = (pieces > 0) & (~at_edge | (away > EDGE_MM))
+        worst = max(worst, 100 * float(bad.sum()) / max(1, int(shown.sum())))
     return worst
 
 

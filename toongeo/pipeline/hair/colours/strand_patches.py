@@ -13,6 +13,7 @@ Floats = NDArray[np.floating]
 _MOST = 60  # patches: more look no more varied
 _SIDE_MM = (10.0, 28.0)  # of a patch: a lock of hair, as far as the hair is broad enough
 _FLOW_MM = 8.0  # over which the direction of strands is smoothed
+_OUTSTANDING = 2.0  # times the usual contrast
 _STEADY = 0.15  # coherence below which a patch is taken as it stands
 
 
@@ -33,7 +34,10 @@ def strand_patches(colours: PictureColours, per_mm: float, rng: np.random.Genera
     at = centres[:, None, None] + steps[:, None, None] * down[:, None, None] + steps[:, None] * across[:, None, None]
     places = np.moveaxis(at, 3, 0).reshape(2, -1)
     channels = [map_coordinates(detail[..., k], places, order=1, mode="nearest") for k in range(3)]
-    return np.stack(channels, 1).reshape(len(centres), pixels, pixels, 3).astype(np.float32)
+    patches = np.stack(channels, 1).reshape(len(centres), pixels, pixels, 3).astype(np.float32)
+    # A stroke that few patches have is drawn where it belongs, not a pattern of the hair.
+    contrast = patches.std((1, 2, 3))
+    return patches[contrast <= _OUTSTANDING * np.median(contrast)]
 
 
 def _strand_directions(colours: PictureColours) -> Floats:

@@ -45,7 +45,7 @@ def hair_raster(plane: WorkingPlane, mask: Mask, crown: Mask) -> HairRaster:
     hair = without_holes(hair, _PINHOLE_MM2)
     hair = large_pieces(hair & _near(hair, crown), _SPECK) if hair.any() else hair
     above = ~pictured & (np.arange(len(hair))[:, None] > len(hair) // 2)
-    cut = (hair & dilated(above, 2 * CELL_MM)).any(0)
+    cut = (hair & dilated(above, CELL_MM)).any(0)
     if cut.sum() > _CUT * crown.any(0).sum() > 0:
         hair = _completed(hair, pictured, crown)
     return HairRaster(hair, pictured)

@@ -97,7 +97,7 @@ def working_plane(face: AlignedFace, mask: NDArray[np.bool_]) -> WorkingPlane:
     rows, columns = np.nonzero(mask)
     every = max(1, len(rows) // _MOST_PIXELS)
     hair = plane.xy(np.column_stack([columns, rows])[::every].astype(np.float64))
-    low = np.minimum(head.min(0), hair.min(0)) - _PAD_MM
-    high = np.maximum(head.max(0), hair.max(0)) + _PAD_MM
+    shown = np.vstack([head, hair])
+    low, high = shown.min(0) - _PAD_MM, shown.max(0) + _PAD_MM
     columns_, rows_ = (np.ceil((high - low) / CELL_MM).astype(int) + 1).tolist()
     return WorkingPlane(plane.rotation, unroll, scale, origin, low, (rows_, columns_))

@@ -20,7 +20,7 @@ Mask = NDArray[np.bool_]
 
 STEP_MM, GRID_MM = 2.8, 7.5  # spacing along outlines, and between the points inside
 RINGS_MM = (1.5, 4.5)  # inside outlines: rows of points, without which a shell that turns there is a washboard
-FOLD_MM = (-2.0, -5.0)  # outside a part: rows where the shell folds away from it
+FOLD_MM = (-1.3, -4.5)  # outside a part: rows where the shell folds away from it
 _CLOSE_MM = 1.6  # nearer to another outline an outline adds nothing
 _SOFT, _EPSILON = 0.8, 0.35  # cells: what smooths an outline, and what it may be off by
 _SHORTEST_MM = 0.3  # pieces of outlines below this are not split any more
@@ -128,7 +128,11 @@ def _inner_points(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask], taken
             for contour in find_contours(soft, level):
                 row = _even(plane.points(contour[:, ::-1]))
                 row = row[plane.sample(distances[0], row) > 1.0]
-                row = row[cKDTree(np.vstack([taken, *rows])).query(row)[0] > 0.45 * STEP_MM] if len(row) else row
+                row = (
+                    row[cKDTree(np.vstack([taken, *rows])).query(row)[0] > min(0.45 * STEP_MM, 0.7 * abs(level))]
+                    if len(row)
+                    else row
+                )
                 rows.append(row)
     coarse = GRID_MM * max(1.0, float(np.sqrt(whole.sum() * CELL_MM**2 / _LARGE_MM2)))
     low, high = plane.low, plane.points(np.array(plane.shape[::-1]))

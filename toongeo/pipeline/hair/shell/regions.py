@@ -24,6 +24,7 @@ _GAP_MM = 10.0  # between scalp and hair behind the neck, or in that: below, non
 _TOUCH_MM = 8.0  # breadth of the overlap with the outline of a head, where the fit may be off by so much
 _SLIVER_MM = 1.25  # half the breadth of what is no gap between front and back
 _CALM_MM = 1.0  # smooths the hairline; not the outer outline, whose corners are drawn
+_DRAWN_IN = 0.65  # level of the smoothed hairline, 0.4 mm inside, as the folded edge of hair covers so much skin
 _TURNED = 12.0  # degrees of yaw beyond which one side of the hair is hidden
 
 
@@ -111,12 +112,13 @@ def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: He
     """Front: the hair of the picture. Back: behind the scalp, behind hair beside the head, and between strands."""
     front = raster.hair
     hanging = _between_strands(face, front, head)
-    back = head.crown | (dilated(head.crown, _AROUND_MM) & (eroded(head.head, CELL_MM) | front))
+    covered = front | eroded(head.neck, CELL_MM)  # what is behind these is not seen from the front
+    back = head.crown | (dilated(head.crown, _AROUND_MM) & covered)
     back |= (front & ~head.aired) | hanging
-    back = without_holes(closed(back, _GAP_MM) & (front | head.head))
+    back = without_holes(closed(back, _GAP_MM) & covered)
     back = large_pieces(back, 0.02)
     whole = front | back
-    calm = cv2.GaussianBlur(front.astype(np.float32), (0, 0), _CALM_MM / CELL_MM) > 0.5
+    calm = cv2.GaussianBlur(front.astype(np.float32), (0, 0), _CALM_MM / CELL_MM) > _DRAWN_IN
     front = np.where(depth_inside(whole) > 4.0, calm, front)
     front = front | _slivers(whole & ~front, front)
     back = back | _slivers(whole & ~back, back)
@@ -153,4 +155,4 @@ def _between_strands(face: AlignedFace, hair: Mask, head: HeadRaster) -> Mask:
         elif abs(face.camera.yaw) > _TURNED and row < lowest and (hair[row] & ~head.neck[row]).any():
             ends = (columns[0], behind[-1]) if len(left) else (behind[0], columns[-1])
             between[row, ends[0] : ends[1] + 1] = True
-    return opened(between & (hair | dilated(head.head, 1.0)), 4.0)
+    return opened(between, 4.0)

@@ -17,14 +17,17 @@ Floats = NDArray[np.floating]
 Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 
-_LIP_MM = 1.5  # between skin and the edge of hair that lies on it
+_LIP_MM = 1.0  # between skin and the edge of hair that lies on it
 _BALL, _PUFF = 0.95, 0.5  # fullness of the whole outline, and of a strand, against a sphere's
 _SOFT_MM = 5.0  # over which one surface goes over into another
 _SLOPE = 0.5  # by which hair gets thicker away from its line on the skin
 _RISE = 1.5  # slope, at most, of hair away from where it comes from behind the head
 _FULL = (0.5, 1.2)  # of the back against a sphere
 _SHEET_MM = (0.8, 6.0)  # thickness of hair where only one side of it is seen: at the edge, and away from it
-_FOLD_MM, _FOLD_WITHIN_MM = 3.0, 3.2  # the edge of a fringe is rounded over this
+_FOLD_MM, _FOLD_WITHIN_MM = (
+    4.5,
+    2.6,
+)  # so steeply the edge of a fringe goes under the skin, that it covers no more of it
 _ROUNDS = 30  # passes that smooth the depth of the rim
 
 
