@@ -34,6 +34,8 @@ class Head:
         Albedo, sRGB 0-255.
     normal : (h, w, 3) float32
         Camera frame.
+    depth : (h, w) float32, mm
+        Towards the viewer; lowest off the head.
     turn, height : (h, w) float32
         Direction about the head's axis (rad, 0 in front) and height (mm) of the template's surface at the pixel.
     across, up : (h, w) float32
@@ -54,6 +56,7 @@ class Head:
     skull: Mask
     colour: Floats
     normal: Floats
+    depth: Floats
     turn: Floats
     height: Floats
     across: Floats
@@ -109,7 +112,7 @@ def _maps(rng: Rng, model: MorphableModel, V, camera, side: int) -> Head:
     mean = model.mean
     turn = np.arctan2(mean[:, 0], mean[:, 2] - AXIS)
     albedo = model.albedo_mean + np.tensordot(rng.normal(0, 1, len(model.albedo)), model.albedo, 1)
-    values = np.column_stack([turn, mean[:, 1], normals @ camera.rotation.T, np.clip(albedo, 0, 1) * 255])
+    values = np.column_stack([turn, mean[:, 1], normals @ camera.rotation.T, np.clip(albedo, 0, 1) * 255, depth])
     # The seam of the directions lies behind: pixels that cross it are behind too.
     maps = interpolate(seen, model.faces, values.astype(np.float32))
     part = {
@@ -133,8 +136,9 @@ def _maps(rng: Rng, model: MorphableModel, V, camera, side: int) -> Head:
         seen=seen.mask,
         **part,
         skull=skull,
-        colour=maps[..., 5:],
+        colour=maps[..., 5:8],
         normal=maps[..., 2:5] / np.maximum(np.linalg.norm(maps[..., 2:5], axis=2, keepdims=True), 1e-6),
+        depth=np.where(seen.mask, maps[..., 8], depth.min()).astype(np.float32),
         turn=maps[..., 0],
         height=maps[..., 1],
         across=(-upright[1] * dx + upright[0] * dy).astype(np.float32),
@@ -170,6 +174,17 @@ def paint_features(rng: Rng, img: Floats, head: Head, hair: Floats) -> None:
         iris = tuple(float(c) for c in rng.uniform(10, 130, 3))
         cv2.circle(img, tuple(int(c) for c in fixed(middle)), int(radius * 16), iris, -1, cv2.LINE_AA, 4)
         cv2.polylines(img, [fixed(eye[:4])], False, (30.0, 22.0, 20.0), int(rng.integers(1, 4)), cv2.LINE_AA, 4)
+    if chance(rng, 0.7):
+        mouth = points[[*range(48, 55), *range(59, 54, -1)]][[0, 1, 2, 3, 4, 5, 6, 11, 10, 9, 8, 7]]
+        lips = tuple(
+            float(c) for c in np.median(img[head.face], axis=0) * rng.uniform([0.7, 0.35, 0.4], [1.0, 0.8, 0.8])
+        )
+        cv2.fillPoly(img, [fixed(mouth)], lips, cv2.LINE_AA, 4)
+    for nostril in points[[32, 34]] + rng.normal(0, 0.01 * unit, (2, 2)):
+        x, y = fixed(nostril)
+        cv2.circle(
+            img, (int(x), int(y)), int(rng.uniform(0.01, 0.05) * unit * 16), (40.0, 25.0, 22.0), -1, cv2.LINE_AA, 4
+        )
     brow = tuple(float(c) for c in hair * rng.uniform(0.5, 1.0))
     for rows in (range(17, 22), range(22, 27)):
         line = points[list(rows)]

@@ -16,7 +16,7 @@ from random_head import Head, Mask, paint_features, random_head
 
 from toongeo.model import MorphableModel
 
-__all__ = ["HAIR", "HAT", "OTHER", "Picture", "random_picture"]
+__all__ = ["HAIR", "HAT", "OTHER", "Picture", "cropped", "random_picture"]
 
 OTHER, HAIR, HAT = 0, 1, 2
 _SIDE = 400  # px; a head is then about as large as the view in which hair is looked for
@@ -49,7 +49,7 @@ def random_picture(rng: Rng, model: MorphableModel) -> Picture:
     img = _developed(rng, img, style)
     unit = np.linalg.norm(landmarks[36] - landmarks[45])
     landmarks = landmarks + rng.normal(0, 0.012 * unit, landmarks.shape)
-    return _cropped(rng, Picture(img, labels, landmarks))
+    return cropped(rng, Picture(img, labels, landmarks))
 
 
 def _layers(
@@ -103,6 +103,8 @@ def _shade(rng: Rng, img: Floats, mask: Mask, only: Mask | None = None) -> None:
 def _lit(rng: Rng, head: Head, hair: Floats, drawn: bool) -> Floats:
     """The head's skin under random lamps; beards, stubble, make-up of a whole tone."""
     skin = head.colour * rng.uniform(0.45, 1.1) if not drawn else np.ones_like(head.colour) * _skin_tone(rng)
+    if not drawn and chance(rng, 0.4):  # painters have their own tones
+        skin = head.colour * (_skin_tone(rng) / np.median(head.colour[head.face], axis=0))
     if chance(rng, 0.08):
         skin = skin * rng.uniform(0.4, 1.3, 3)
     if chance(rng, 0.4):
@@ -121,12 +123,25 @@ def _lit(rng: Rng, head: Head, hair: Floats, drawn: bool) -> Floats:
         lamp = rng.normal(size=3) + [0, 0.5, rng.choice([0.2, 1.0])]
         lamp /= np.linalg.norm(lamp)
         light += np.clip(head.normal @ lamp.astype(np.float32), 0, 1) * rng.uniform(0.4, 1.0) * (1.15 - ambient)
+    light *= 1 - _hollows(rng, head) * (0.4 if drawn else 1)
     if drawn:
         light = np.full_like(light, 1.0) if chance(rng, 0.5) else np.round(light * 2) / 2 * 0.5 + 0.5
-    elif chance(rng, 0.5):  # a shiny forehead
-        shine = np.clip(head.normal @ np.float32([0.2, 0.5, 0.84]), 0, 1) ** rng.uniform(8, 40)
-        return np.clip(skin * light[..., None] + shine[..., None] * rng.uniform(0, 90), 0, 255)
+    elif chance(rng, 0.7):  # shiny skin
+        lamp = np.array([rng.normal(0, 0.4), 0.5, 0.8], np.float32)
+        shine = np.clip(head.normal @ (lamp / np.linalg.norm(lamp)), 0, 1) ** rng.uniform(6, 50)
+        return np.clip(skin * light[..., None] + shine[..., None] * rng.uniform(0, 130), 0, 255)
     return np.clip(skin * light[..., None], 0, 255)
+
+
+def _hollows(rng: Rng, head: Head) -> Floats:
+    """How far (h, w) hollows (lower than their surroundings) and turned-away rims are darkened."""
+    dark = np.zeros(head.seen.shape, np.float32)
+    for reach, depth in ((0.018, 14.0), (0.006, 6.0)):
+        around = cv2.GaussianBlur(head.depth, (0, 0), reach * _SIDE)
+        dark += np.clip((around - head.depth) / depth, 0, 1) * rng.uniform(0, 0.8)
+    if chance(rng, 0.45):
+        dark += (1 - np.clip(head.normal[..., 2], 0, 1)) ** 2 * rng.uniform(0.2, 0.9)
+    return np.clip(dark, 0, 0.85)
 
 
 def _folds(rng: Rng, head: Head) -> Floats:
@@ -233,7 +248,7 @@ def _developed(rng: Rng, img: Floats, style: str) -> NDArray[np.uint8]:
     return np.asarray(out, np.uint8)
 
 
-def _cropped(rng: Rng, picture: Picture) -> Picture:
+def cropped(rng: Rng, picture: Picture) -> Picture:
     """Cut as pictures are: close or wide, seldom through the hair."""
     if chance(rng, 0.3):
         return picture
@@ -243,7 +258,8 @@ def _cropped(rng: Rng, picture: Picture) -> Picture:
     x0 = min(points[:, 0].min() - 10, columns.min() - rng.uniform(least, 60))
     x1 = max(points[:, 0].max() + 10, columns.max() + rng.uniform(least, 60))
     y0 = min(points[:, 1].min() - 10, rows.min() - rng.uniform(least, 70))
-    y1 = max(points[:, 1].max() + 8, rng.uniform(points[:, 1].max(), _SIDE))
+    height, width = picture.labels.shape
+    y1 = max(points[:, 1].max() + 8, rng.uniform(points[:, 1].max(), height))
     x0, y0 = int(max(0, x0)), int(max(0, y0))
-    box = slice(y0, int(min(_SIDE, y1)) + 1), slice(x0, int(min(_SIDE, x1)) + 1)
+    box = slice(y0, int(min(height, y1)) + 1), slice(x0, int(min(width, x1)) + 1)
     return Picture(np.ascontiguousarray(picture.img[box]), picture.labels[box].copy(), points - [x0, y0])

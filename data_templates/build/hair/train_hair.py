@@ -1,6 +1,7 @@
 """Trees that tell hair and hats, from pictures of random heads: makes ``data_templates/hair.npz``.
 
-usage: OPENBLAS_NUM_THREADS=1 PYTHONPATH=. python data_templates/build/hair/train_hair.py [--pictures N] [--out FILE]
+usage: OPENBLAS_NUM_THREADS=1 PYTHONPATH=.:data_templates/build \\
+       python data_templates/build/hair/train_hair.py [--pictures N] [--out FILE]
 
 Takes about fifteen minutes on one core and 4 GB. Nothing but the template is looked at: no photograph, no drawing. The
 same machine gives the same bytes. It prints how the trees do on the half of the renders that they were not grown on.
@@ -14,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from grow_trees import grow_trees
 from random_picture import random_picture
+from rendered_face import rendered_face
 from training_rows import TrainingRows, training_rows
 
 from toongeo.model import default_model
@@ -26,7 +28,9 @@ PER_PICTURE = 300  # superpixels: so that large pictures do not count more
 
 
 def rows_of(seed: int) -> TrainingRows:
-    return training_rows(random_picture(np.random.default_rng([SEED, seed]), default_model()))
+    """Two renderers take turns: this folder's has more kinds of hair, hats and grounds, the other better faces."""
+    rng = np.random.default_rng([SEED, seed])
+    return training_rows(random_picture(rng, default_model()) if seed % 2 else rendered_face(rng))
 
 
 def sampled(numbers: list[np.ndarray], cases: list[TrainingRows], rng: np.random.Generator):
