@@ -120,7 +120,7 @@ class FaceLabel(IntEnum):
     HAIR = 10
     EARS = 11
     NECK = 12
-    OTHER = 13  # glasses, hands, black outlines, beards
+    OTHER = 13  # glasses, hands, beards, black outlines
     HAT = 14  # caps, hoods, helmets, scarves about the head
 
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Mask", "filled", "grown"]
+__all__ = ["Mask", "filled", "grown", "signed_distance"]
 
 Mask = NDArray[np.bool_]
 
@@ -26,3 +26,10 @@ def grown(mask: Mask, radius: float) -> Mask:
         return mask.copy()
     away = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)
     return np.asarray(away <= radius, np.bool_)
+
+
+def signed_distance(mask: Mask) -> NDArray[np.float32]:
+    """Distance (h, w), px, to the border of a mask, positive inside."""
+    inside = cv2.distanceTransform(mask.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_3)
+    outside = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_3)
+    return np.asarray(inside - outside, np.float32)

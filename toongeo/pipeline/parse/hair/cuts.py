@@ -1,0 +1,86 @@
+"""Masks from a posterior: by its own odds with colours learned on the way, and by GrabCut."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.pipeline.parse.hair.colour_evidence import colour_evidence
+from toongeo.pipeline.parse.hair.head_zones import HeadZones
+from toongeo.pipeline.parse.hair.min_cut import min_cut
+from toongeo.pipeline.parse.masks import Mask, grown, signed_distance
+from toongeo.pipeline.parse.working_view import WorkingView
+
+__all__ = ["colour_cut", "grab_cut"]
+
+Field = NDArray[np.float32]
+
+_PLACE, _COLOUR = 0.7, 0.6  # weights of the posterior's log-odds and of the colours' evidence
+_CLIP = 0.02  # posteriors are believed up to here
+_EVIDENCE = 4.0  # the most that a colour may say
+_SMOOTHNESS = 6.0
+_SURE = 3.2  # log-odds; about the largest that the posterior alone gives is 2.7
+_NEVER = -6.0
+_FEWEST = 30  # px that either side of GrabCut needs
+_PASSES = 3
+_ROOM = 0.15  # head sizes about the likely hair that GrabCut looks at
+_COARSE = 2  # the first two cuts are of a picture reduced by this: ten times faster
+_BAND = 0.03  # head sizes about the coarse outline in which the last cut looks for the fine one
+
+
+def colour_cut(lab: Field, zones: HeadZones, posterior: Field, never: Mask | None) -> Mask:
+    """Hair or hat (h, w) bool: cuts whose colours are learned from the cut before, and whose odds keep the posterior.
+
+    ``never`` are pixels that are ground for sure.
+    """
+    clipped = np.clip(posterior, _CLIP, 1 - _CLIP)
+    place = np.log(clipped / (1 - clipped)) * _PLACE
+    barred = zones.core & (posterior < 0.3)
+    if never is not None:
+        barred |= never
+    smooth = np.asarray(cv2.bilateralFilter(lab, 5, 8, 2), np.float32)
+    near = np.where(grown(posterior > 0.3, 0.3 * zones.head), 1, 0.3).astype(np.float32)
+    small = smooth.shape[1] // _COARSE, smooth.shape[0] // _COARSE
+    reduced = np.asarray(cv2.resize(smooth, small, interpolation=cv2.INTER_AREA), np.float32)
+    weight, cut = posterior, posterior > 0.5
+    for last in (False, False, True):
+        inside = np.clip(weight - 0.1, 0, 1) ** 2
+        outside = np.clip(0.7 - weight, 0, 1) ** 2 * near
+        evidence = np.clip(colour_evidence(lab, inside, outside), -_EVIDENCE, _EVIDENCE)
+        odds = np.where(barred, _NEVER, place + _COLOUR * evidence).astype(np.float32)
+        if last:
+            away = signed_distance(cut)
+            sure = np.where(np.abs(away) > _BAND * zones.head, -_NEVER * np.sign(away), odds)
+            return min_cut(np.where(barred, _NEVER, sure).astype(np.float32), smooth, _SMOOTHNESS, _SURE)
+        coarse = np.asarray(cv2.resize(odds, small, interpolation=cv2.INTER_AREA), np.float32)
+        part = min_cut(coarse, reduced, _SMOOTHNESS, _SURE).astype(np.float32)
+        cut = cv2.resize(part, cut.shape[::-1], interpolation=cv2.INTER_LINEAR) > 0.5
+        weight = 0.5 * posterior + 0.5 * cut.astype(np.float32)
+    return cut
+
+
+def grab_cut(view: WorkingView, zones: HeadZones, posterior: Field, never: Mask | None) -> Mask:
+    """Hair or hat (h, w) bool by GrabCut (Rother et al. 2004), whose seeds are where the posterior is sure."""
+    mask = np.where(posterior > 0.5, cv2.GC_PR_FGD, cv2.GC_PR_BGD).astype(np.uint8)
+    mask[grown(posterior > 0.9, -0.02 * zones.head)] = cv2.GC_FGD
+    mask[(posterior < 0.05) | (zones.core & (posterior < 0.3))] = cv2.GC_BGD
+    if never is not None:
+        mask[never] = cv2.GC_BGD
+    front = (mask == cv2.GC_FGD) | (mask == cv2.GC_PR_FGD)
+    if min(front.sum(), (~front).sum()) < _FEWEST:
+        return front
+    rows, columns = (_extent(grown(front, _ROOM * zones.head).any(axis=axis)) for axis in (1, 0))
+    part = np.ascontiguousarray(mask[rows, columns])
+    smooth = np.ascontiguousarray(cv2.bilateralFilter(view.pixels, 5, 20, 3)[rows, columns])
+    cv2.setRNGSeed(0)  # its k-means starts at random
+    models = np.zeros((2, 1, 65))
+    cv2.grabCut(smooth, part, (0, 0, 0, 0), models[0], models[1], _PASSES, cv2.GC_INIT_WITH_MASK)
+    result = np.zeros_like(front)
+    result[rows, columns] = (part == cv2.GC_FGD) | (part == cv2.GC_PR_FGD)
+    return result
+
+
+def _extent(line: Mask) -> slice:
+    where = np.flatnonzero(line)
+    return slice(int(where[0]), int(where[-1]) + 1)

@@ -1,0 +1,80 @@
+"""When a hair mask is good enough to build hair from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.pipeline.parse.hair.head_zones import HeadZones
+from toongeo.pipeline.parse.masks import Mask, grown
+
+__all__ = ["RULES", "HairMeasures", "distrust", "hair_measures"]
+
+Field = NDArray[np.float32]
+
+_TOP = 0.3  # faces above the brows that hair must reach to top a column of the head
+
+
+@dataclass(frozen=True)
+class HairMeasures:
+    """What a rule of trust looks at.
+
+    Attributes
+    ----------
+    area : of the mask, in squares of the head's size
+    agreement : intersection over union of two masks that were cut in different ways
+    inside : mean posterior in the mask
+    outside : mean posterior in a ring about it
+    topped : share of the columns over the crown that hair tops
+    border : share of the outline that is the picture's border
+    hat : share of hair and hat that is hat
+    """
+
+    area: float
+    agreement: float
+    inside: float
+    outside: float
+    topped: float
+    border: float
+    hat: float
+
+
+def hair_measures(mask: Mask, other: Mask, hat: Mask, zones: HeadZones, posterior: Field) -> HairMeasures:
+    """Measures of a mask of hair and hat (h, w), of another mask of the same, and of the hat in the first."""
+    union = int((mask | other).sum())
+    ring = grown(mask, 0.06 * zones.head) & ~grown(mask, 0.015 * zones.head)
+    columns = np.flatnonzero((zones.skull & (zones.up > 0.25)).any(axis=0))
+    sixth = len(columns) // 6
+    middle = columns[sixth : len(columns) - sixth]
+    top = np.where(mask[:, middle], zones.up[:, middle], -9).max(axis=0, initial=-9) > _TOP
+    outline = int((cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_GRADIENT, np.ones((3, 3), np.uint8)) * mask).sum())
+    cut = int(mask[0].sum() + mask[:, 0].sum() + mask[:, -1].sum())
+    return HairMeasures(
+        area=float(mask.sum()) / zones.head**2,
+        agreement=float((mask & other).sum()) / union if union else 1.0,
+        inside=float(posterior[mask].mean()) if mask.any() else 0.0,
+        outside=float(posterior[ring].mean()) if ring.any() else 0.0,
+        topped=float(top.mean()) if len(top) else 0.0,
+        border=cut / max(1, outline),
+        hat=float(hat.sum()) / max(1, int(mask.sum())),
+    )
+
+
+# Name of the measure, least and largest value that is trusted, and what is said otherwise.
+RULES = (
+    ("area", 0.03, 9.0, "there is hardly any hair"),
+    ("hat", 0.0, 0.25, "a hat covers the hair"),
+    ("topped", 0.5, 1.0, "hair does not top the head"),
+    ("agreement", 0.8, 1.0, "two ways to cut the hair disagree"),
+    ("inside", 0.75, 1.0, "what looks like hair is doubtful"),
+    ("outside", 0.0, 0.18, "hair seems to go on beyond its outline"),
+    ("border", 0.0, 0.35, "the picture's border cuts the hair"),
+)
+
+
+def distrust(measures: HairMeasures) -> tuple[str, ...]:
+    """Why a mask is not to be trusted; empty if it is."""
+    return tuple(text for name, least, most, text in RULES if not least <= getattr(measures, name) <= most)
