@@ -228,7 +228,7 @@ def picture_table(files: list[Path], sheets: Path | None) -> None:
             rows.setdefault(name, []).append([deviation(D), *identity_errors(D, size_mm), seconds])
         if sheets:
             pairs = [[clay(each.vertices(dict(w))) for w in SHEET] for each in (rig, transferred)]
-            write_image(sheets / f"{path.stem}.png", np.vstack([np.hstack(pair) for pair in pairs]))
+            write_image(sheets / f"{path.stem}_expressions.png", np.vstack([np.hstack(pair) for pair in pairs]))
     base = np.mean(rows["not optimized"], axis=0)[0]
     print(f"\n{len(files)} drawings: correlation matrix against the normal face's, and what moves that should not\n")
     print("| method | rms of cosines | of the unoptimized | blink outside the eye, % | outside the mask, % |")

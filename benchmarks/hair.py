@@ -30,7 +30,7 @@ import numpy as np
 
 import toongeo as tg
 from toongeo.avatar import Avatar
-from toongeo.avatar.add_hair import HairyHead, add_hair
+from toongeo.avatar.add_hair import add_hair
 from toongeo.geometry import self_intersections
 from toongeo.model.expression_schemes import PRESETS
 from toongeo.pipeline import Hair
@@ -142,11 +142,10 @@ def measured(picture: Path, masks: Path, found: bool) -> str:
     px = np.clip(px, 0, np.array(mask.shape[::-1]) - 1)
     way = np.linalg.norm(avatar.face.vertices[still] - painted.face.vertices[still], axis=1)
     moved = float(way[~own[px[:, 1], px[:, 0]]].max(initial=0))
-    bald = HairyHead(painted.face, painted.rig, painted.parse, None)
     seconds = []
     for _ in range(3):
         started = time.perf_counter()
-        add_hair(img, landmarks, painted.fit, bald, mask=own)
+        add_hair(img, painted.face, painted.rig, avatar.parse)
         seconds.append(time.perf_counter() - started)
     share, name = before(avatar, hair, own)
     return (

@@ -34,7 +34,8 @@ def test_every_public_name_exists_and_is_documented():
 
 
 def test_a_verb_wins_over_the_module_of_its_name():
-    code = "import toongeo.make_avatar, toongeo.avatar, toongeo as t; print(callable(t.make_avatar), t.Avatar.__name__)"
+    code = "import toongeo.geometry.laplacian_align, toongeo.avatar.avatar, toongeo as t; "
+    code += "print(callable(t.geometry.laplacian_align), t.Avatar.__name__)"
     assert run(sys.executable, "-c", code, cwd=ROOT).split() == ["True", "Avatar"]
 
 

@@ -9,6 +9,21 @@ from typing import Any, Protocol
 
 import numpy as np
 
+__all__ = [
+    "Camera",
+    "Coefficients",
+    "ExpressionDriver",
+    "FaceLabel",
+    "FaceParse",
+    "FaceParser",
+    "FittedFace",
+    "HeadCamera",
+    "LandmarkMapper",
+    "Regressor",
+    "TextureGenerator",
+    "TextureGeometry",
+]
+
 
 class Camera(Protocol):
     """A map from the model frame (mm) to the image frame (pixels; x right, y down; integer = pixel centre)."""

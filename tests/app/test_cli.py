@@ -57,7 +57,7 @@ def test_an_option_that_the_format_has_not_is_refused_before_the_work(tmp_path, 
 def test_demo_writes_its_four_kinds_of_file(tmp_path, capsys):
     assert main(["demo", "-o", str(tmp_path / "demo")]) == 0
     names = {path.name for path in (tmp_path / "demo").iterdir()}
-    assert names == {"avatar.glb", "avatar.obj", "avatar.mtl", "avatar.png", "contact-sheet.png"}
+    assert names == {"avatar.glb", "avatar.obj", "avatar.mtl", "avatar_texture.png", "contact-sheet.png"}
     printed = capsys.readouterr().out
     assert all(name in printed for name in names)
 

@@ -183,7 +183,7 @@ def test_obj_keeps_vertices_and_names_its_texture(avatar, tmp_path):
     data = read_obj(tmp_path / "face.obj")
     n = len(avatar.vertices())
     np.testing.assert_array_equal(data.vertices[:n], avatar.vertices())
-    assert (tmp_path / "face.png").exists() and "map_Kd face.png" in (tmp_path / "face.mtl").read_text()
+    assert (tmp_path / "face_texture.png").exists() and "map_Kd face_texture.png" in (tmp_path / "face.mtl").read_text()
 
 
 def test_ply_has_the_colours_of_the_texture_and_its_uv(avatar, tmp_path):

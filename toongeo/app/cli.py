@@ -8,6 +8,8 @@ from typing import Any
 from toongeo import __version__
 from toongeo.app.bench.commands import add_bench
 
+__all__ = ["main"]
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line.

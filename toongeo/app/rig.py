@@ -4,11 +4,14 @@ from pathlib import Path
 
 import numpy as np
 
+from toongeo.app.check_output import check_output
 from toongeo.io import Scene, SceneMesh, read_image, read_mesh_landmarks, read_obj, write_glb
 from toongeo.io.scene import METRES
 from toongeo.pipeline import Rig, rig_mesh
 
-TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored
+__all__ = ["rig"]
+
+_TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored
 
 
 def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = None) -> Rig:
@@ -28,12 +31,12 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     Raises
     ------
     ValueError, OSError
-        For bad input or an output that cannot be written; the output is checked before the work.
+        For bad input or an output that cannot be written or is a file that is read; the output is checked before the
+        work.
     """
     if output.suffix.lower() != ".glb":
         raise ValueError(f"output: expected a name that ends in .glb, got {output}")
-    if not output.parent.is_dir():
-        raise OSError(f"output: no folder {output.parent} to write {output.name} to")
+    check_output(output, {"mesh": mesh, "landmarks": landmarks, "texture": texture})
     if mesh.suffix.lower() != ".obj":
         raise ValueError(f"mesh: expected a name that ends in .obj, got {mesh}")
     read = read_obj(mesh)
@@ -54,7 +57,7 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
         target_names=found.names,
     )
     size = float(np.linalg.norm(np.ptp(head.vertices, axis=0)))
-    write_glb(output, Scene((head,)), tolerance_mm=TOLERANCE * size)
+    write_glb(output, Scene((head,)), tolerance_mm=_TOLERANCE * size)
     report = found.report
     print(f"{len(found.names)} expressions on {len(read.vertices)} vertices in {report['seconds']:.1f} s")
     print(f"{report['matched']:.1%} of the template's face found a partner, mean distance {report['distance']:.3g}")

@@ -20,7 +20,9 @@ from toongeo.render import (
     studio_light,
 )
 
-HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
+__all__ = ["Avatar", "Weights"]
+
+_HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
 Weights = Mapping[str, float] | np.ndarray | None
 
 
@@ -144,10 +146,13 @@ class Avatar(AvatarStages):
         ``.vrm``          VRM 1.0 with a body of bones alone; ``crop normals texture meta``
         ``.html``         a page with sliders that needs no network; ``crop quantize texture animation title``
         ``.usdz``         with blend shapes, needs the extra ``usd``; ``crop names``
-        ``.obj``          with ``.mtl`` and ``.png`` beside it; ``crop``
+        ``.obj``          ``face.obj`` with ``face.mtl`` and ``face_texture.png`` beside it; ``crop``
         ``.ply``          with uv, and colours at the vertices; ``crop``
-        ``obj-sequence``  a folder with an ``.obj`` an expression; ``crop names``
+        ``obj-sequence``  a folder with an ``.obj`` an expression, ``face.mtl``, ``face_texture.png``; ``crop names``
         ================  ================================================================================
+
+        The file of this name is replaced. Those that come along with it, or stand in the folder, replace only what was
+        written for the same output before.
 
         Parameters
         ----------
@@ -187,6 +192,8 @@ class Avatar(AvatarStages):
             the avatar is of a kind that a loadable file cannot hold.
         ImportError
             If ``.usdz`` is asked for without the extra.
+        FileExistsError
+            If a file that comes along would replace one that was not written for this output.
         OSError
             If a file cannot be written; nothing half-written is left.
         """
@@ -197,7 +204,7 @@ class Avatar(AvatarStages):
         shown = skin if self.hair is None else np.vstack([skin, self.hair.vertices])
         low, high = shown.min(0), shown.max(0)
         return ScaledOrthographicCamera.look(
-            yaw, pitch, size=size, centre=(low + high) / 2, extent=HEADROOM * (high - low).max()
+            yaw, pitch, size=size, centre=(low + high) / 2, extent=_HEADROOM * (high - low).max()
         )
 
 

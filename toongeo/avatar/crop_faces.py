@@ -7,6 +7,8 @@ import numpy as np
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.parts import INNER_PARTS
 
+__all__ = ["Crop", "crop_faces"]
+
 Crop = Literal["head", "bust", "face"]
 
 

@@ -12,6 +12,8 @@ from toongeo.model import MorphableModel, default_model
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.pipeline import Hair
 
+__all__ = ["load_avatar"]
+
 
 def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = None) -> Avatar:
     """Read a ``.glb`` that :meth:`toongeo.Avatar.save` wrote.

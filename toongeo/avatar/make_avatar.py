@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, under_hair
+from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.report import AvatarReport, landmark_errors, shape_warnings
 from toongeo.caricature import caricature_rig
@@ -37,8 +37,10 @@ from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser, HairModeler
 
+__all__ = ["STAGES", "make_avatar"]
+
 STAGES = ("fit", "parse", "align", "rig", "eyes", "hair", "texture", "report")
-ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
+_ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
     "cartoon": align_face,
     "caricature": align_caricature,
 }
@@ -111,9 +113,9 @@ def make_avatar(
     ValueError
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, or method or rig is unknown.
     """
-    align = ALIGNERS.get(method)
+    align = _ALIGNERS.get(method)
     if align is None:
-        raise ValueError(f"method: expected one of {', '.join(ALIGNERS)}, got {method!r}")
+        raise ValueError(f"method: expected one of {', '.join(_ALIGNERS)}, got {method!r}")
     check_image(img)
     check_size(texture_size)
     if rig not in ("transfer", "caricature"):
@@ -124,7 +126,8 @@ def make_avatar(
     model = model or default_model()
     fit = fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
-    parse = parse_face(img, landmarks, fit, parser=parser)
+    drawn, faults = read_mask(hair_mask, img.shape)
+    parse = parse_face(img, landmarks, fit, parser=parser, hair_mask=drawn)
     if snap:
         clock.start("fit")
         landmarks = snap_eyes(landmarks, parse)
@@ -141,15 +144,15 @@ def make_avatar(
     # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
     face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - at_rest.vertices))
     shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
-    head = HairyHead(face, shapes, parse, None)
-    if hair:
+    head = HairyHead(face, shapes, None, faults)
+    if hair and not faults:
         clock.start("hair")
-        head = add_hair(img, landmarks, fit, head, None if hair is True else hair, hair_mask)
-        face, shapes, parse = head.face, head.rig, head.parse
+        head = add_hair(img, face, shapes, parse, None if hair is True else hair)
+        face, shapes = head.face, head.rig
     clock.start("texture")
     irises = find_irises(img, landmarks)
     eyes = aim_eyes(face, eyes, irises)
-    shown = parse if head.hair is None or parse.hair is None else under_hair(parse, face, parse.hair.mask)
+    shown = parse if head.hair is None else under_hair(parse, face)
     texture = bake_texture(img, face, rig=shapes, size=texture_size, parse=shown)
     texture = bake_eyes(img, face, eyes, texture, irises)
     clock.start("report")

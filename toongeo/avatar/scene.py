@@ -17,9 +17,11 @@ from toongeo.model.anatomy.parts import SIDES, TEETH
 from toongeo.pipeline import Eyes, Hair, Rig
 from toongeo.render import sample_image, uv_to_px
 
-FRAMES_PER_SECOND = 30
+__all__ = ["Shapes", "avatar_scene", "demo_clip", "head_parts", "own_shapes", "weight_clip"]
+
+_FRAMES_PER_SECOND = 30
 # The clip: (seconds, weights reached then), linear in between.
-CLIP: tuple[tuple[float, dict[str, float]], ...] = (
+_CLIP: tuple[tuple[float, dict[str, float]], ...] = (
     (0.0, {}),
     (0.5, {}),
     (0.6, {"eyeBlinkLeft": 1, "eyeBlinkRight": 1}),
@@ -31,8 +33,8 @@ CLIP: tuple[tuple[float, dict[str, float]], ...] = (
     (3.8, {}),
 )
 # Parts of the head that are meshes of their own, by regions of the model; the rest is the mesh "head".
-PARTS = {"teeth": TEETH, "tongue": ("tongue",)}
-STILL_MM = 1e-4  # a target that moves no vertex of a part by more is not among the part's
+_PARTS = {"teeth": TEETH, "tongue": ("tongue",)}
+_STILL_MM = 1e-4  # a target that moves no vertex of a part by more is not among the part's
 Shapes = Sequence[tuple[str, Mapping[str, float]]]
 
 
@@ -93,7 +95,7 @@ def head_parts(model: MorphableModel, crop: Crop = "head") -> dict[str, np.ndarr
     """Rows of ``model.faces`` that each mesh of the head has; parts without triangles are left out."""
     kept = crop_faces(model, crop)
     rest, parts = np.ones(len(kept), bool), {}
-    for name, regions in PARTS.items():
+    for name, regions in _PARTS.items():
         masks = [model.regions[region] for region in regions if region in model.regions]
         inside = np.any(masks, axis=0)[model.faces[kept]].all(axis=1) if masks else ~rest & False
         parts[name] = kept[inside]
@@ -103,9 +105,9 @@ def head_parts(model: MorphableModel, crop: Crop = "head") -> dict[str, np.ndarr
 
 def demo_clip(rig: Rig) -> SceneAnimation:
     """A few seconds that show what a face can do, for :func:`avatar_scene`."""
-    keys = np.array([seconds for seconds, _ in CLIP])
-    times = np.arange(round(keys[-1] * FRAMES_PER_SECOND) + 1) / FRAMES_PER_SECOND
-    at_keys = np.array([[then.get(name, 0.0) for name, _ in own_shapes(rig)] for _, then in CLIP])
+    keys = np.array([seconds for seconds, _ in _CLIP])
+    times = np.arange(round(keys[-1] * _FRAMES_PER_SECOND) + 1) / _FRAMES_PER_SECOND
+    at_keys = np.array([[then.get(name, 0.0) for name, _ in own_shapes(rig)] for _, then in _CLIP])
     columns = [np.interp(times, keys, column) for column in at_keys.T]
     return SceneAnimation(times, {"head": np.column_stack(columns)}, name="demo")
 
@@ -138,7 +140,7 @@ def _part(avatar: AvatarStages, name: str, kept: np.ndarray, shapes: Shapes, cro
     used, faces = np.unique(model.faces[kept], return_inverse=True)
     used_uv, uv_faces = np.unique(model.uv_faces[kept], return_inverse=True)
     targets = np.stack([_delta(rig, weights, used) for _, weights in shapes])
-    moving = np.full(len(shapes), True) if name == "head" else np.abs(targets).max(axis=(1, 2)) > STILL_MM
+    moving = np.full(len(shapes), True) if name == "head" else np.abs(targets).max(axis=(1, 2)) > _STILL_MM
     return SceneMesh(
         name=name,
         vertices=rig.neutral[used],

@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.arrays import Floats
 from toongeo.caricature.caricature_fit import CaricatureFit, CaricatureReport
 from toongeo.caricature.caricature_options import CaricatureOptions
 from toongeo.caricature.inner_parts import with_inner_parts
@@ -31,8 +32,6 @@ from toongeo.protocols import HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["fit_caricature"]
-
-Floats = NDArray[np.float64]
 
 
 def fit_caricature(

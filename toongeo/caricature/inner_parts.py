@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.geometry import self_intersections
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 
 __all__ = ["tucked", "with_inner_parts"]
-
-Floats = NDArray[np.float64]
 
 _ROUNDS = 3
 _MARGIN = 0.3  # mm under the skin

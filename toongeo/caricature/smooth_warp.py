@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RBFInterpolator
 
+from toongeo.arrays import Floats
 from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 
 __all__ = ["smooth_warp", "spread_rows"]
-
-Floats = NDArray[np.float64]
 
 _OF_FACE, _OF_HEAD = 150, 75  # nodes beside the landmarks
 

@@ -1,11 +1,10 @@
 """The minimum of a small convex quadratic function in a box."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats
 
 __all__ = ["bounded_quadratic"]
-
-Floats = NDArray[np.float64]
 
 _ROUNDS = 100
 

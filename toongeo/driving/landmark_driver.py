@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import deque
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from toongeo.arrays import Floats
 from toongeo.avatar.avatar import Avatar
 from toongeo.driving.landmark_frames import landmark_frames
 from toongeo.driving.landmark_pose import FEWEST, LandmarkPose, landmark_pose
@@ -18,13 +19,11 @@ from toongeo.pipeline import Rig
 
 __all__ = ["LandmarkDriver", "LiveLandmarks"]
 
-Floats = NDArray[np.float64]
-
-FIRST_NOISE = 1e-3  # of the face's width: what is assumed before anything is known
+_FIRST_NOISE = 1e-3  # of the face's width: what is assumed before anything is known
 LEAST_NOISE = 1e-5  # so that landmarks without noise are explained exactly
-CAUTION = 2.0  # how much more noise the weights assume than there is: quiet weights are worth a little bias
-REMEMBERED = 90  # frames from which live noise is told
-UNKNOWNS = 40  # about as many of the 136 coordinates are explained by weights and pose, whatever they are
+_CAUTION = 2.0  # how much more noise the weights assume than there is: quiet weights are worth a little bias
+_REMEMBERED = 90  # frames from which live noise is told
+_UNKNOWNS = 40  # about as many of the 136 coordinates are explained by weights and pose, whatever they are
 
 
 class LandmarkDriver:
@@ -122,8 +121,8 @@ class LiveLandmarks:
     def __init__(self, rig: LandmarkRig) -> None:
         self._rig = rig
         self._weights = [np.zeros(len(rig.names)), np.zeros(len(rig.names))]  # of the frame as it is, and smoothed
-        self._filter = OneEuroFilter(FIRST_NOISE * rig.width)
-        self._errors: deque[Floats] = deque(maxlen=REMEMBERED)
+        self._filter = OneEuroFilter(_FIRST_NOISE * rig.width)
+        self._errors: deque[Floats] = deque(maxlen=_REMEMBERED)
 
     def __call__(self, landmarks: ArrayLike, time: float) -> Floats:
         """Weights (54,) in [0, 1] of landmarks (68, 2) px at a time in s.
@@ -138,12 +137,12 @@ class LiveLandmarks:
         rig, pixels = self._rig, landmark_frames(landmarks)[0]
         if np.isfinite(pixels).all(axis=1).sum() >= FEWEST:
             with one_thread():
-                pose = landmark_pose(rig, pixels, self._weights[0], FIRST_NOISE)
+                pose = landmark_pose(rig, pixels, self._weights[0], _FIRST_NOISE)
                 self._errors.append(pose.errors(pixels, rig))
                 noise = noise_of(np.array(self._errors))
                 self._filter.noise = noise * rig.width
                 there = self._filter(pose.head_frame(pixels, rig), time)
-                smooth = landmark_pose(rig, pose.picture(there, rig), self._weights[1], CAUTION * noise)
+                smooth = landmark_pose(rig, pose.picture(there, rig), self._weights[1], _CAUTION * noise)
             self._weights = [pose.weights, smooth.weights]
         return _all_weights(self._weights[1][None], rig.names)[0]
 
@@ -155,19 +154,19 @@ def noise_of(errors: Floats) -> float:
     median tells it although some frames jump.
     """
     if len(errors) < 3:
-        return FIRST_NOISE
+        return _FIRST_NOISE
     jerk = np.abs(np.diff(errors, 2, axis=0))
     if not np.isfinite(jerk).any():
-        return FIRST_NOISE
+        return _FIRST_NOISE
     normal = np.sqrt(6) * 0.6745  # of the median of |x - 2 y + z| for unit normal x, y, z
-    explained = np.sqrt(1 - UNKNOWNS / 136)  # part of the noise that weights and pose have taken up
+    explained = np.sqrt(1 - _UNKNOWNS / 136)  # part of the noise that weights and pose have taken up
     return max(float(np.nanmedian(jerk)) / normal / explained, LEAST_NOISE)
 
 
 def doubt_of(errors: Floats) -> float:
     """How far to mistrust landmarks with errors (f, 68, 2): what is unexplained is noise, or a face not quite known."""
-    unexplained = float(np.nanmedian(np.abs(errors))) / 0.6745 / np.sqrt(1 - UNKNOWNS / 136)
-    return max(CAUTION * unexplained, LEAST_NOISE)
+    unexplained = float(np.nanmedian(np.abs(errors))) / 0.6745 / np.sqrt(1 - _UNKNOWNS / 136)
+    return max(_CAUTION * unexplained, LEAST_NOISE)
 
 
 def _poses(rig: LandmarkRig, sequence: Floats) -> list[LandmarkPose]:
@@ -177,7 +176,7 @@ def _poses(rig: LandmarkRig, sequence: Floats) -> list[LandmarkPose]:
         raise ValueError(f"recording: expected a frame with at least {FEWEST} landmarks, got none")
     weights, poses = np.zeros(len(rig.names)), {}
     for i in np.flatnonzero(seen):
-        poses[i] = landmark_pose(rig, sequence[i], weights, FIRST_NOISE)
+        poses[i] = landmark_pose(rig, sequence[i], weights, _FIRST_NOISE)
         weights = poses[i].weights
     known = np.maximum.accumulate(np.where(seen, np.arange(len(seen)), seen.argmax()))
     return [poses[i] for i in known]

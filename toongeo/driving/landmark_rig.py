@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.pipeline import Rig, align_face, build_rig, fit_3dmm, fit_lids
 
 __all__ = ["LandmarkRig"]
-
-Floats = NDArray[np.float64]
 
 _SEVERAL = 6  # frames that a performer's face is found from when none is known to be neutral
 

@@ -9,6 +9,8 @@ from toongeo.model import MorphableModel
 from toongeo.pipeline import fit_3dmm
 from toongeo.protocols import TextureGenerator
 
+__all__ = ["edit_expression", "reference_weights"]
+
 
 def edit_expression(
     img: np.ndarray,

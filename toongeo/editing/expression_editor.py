@@ -19,7 +19,9 @@ from toongeo.pipeline import AlignedFace, FaceFit, Rig, build_rig, fit_lids, fit
 from toongeo.pipeline.rig.weight_vector import weight_vector
 from toongeo.protocols import TextureGenerator, TextureGeometry
 
-TEXTURE_SIZE = 512  # texels
+__all__ = ["ExpressionEditor"]
+
+_TEXTURE_SIZE = 512  # texels
 
 
 class ExpressionEditor:
@@ -58,7 +60,7 @@ class ExpressionEditor:
         pose: Mapping[str, float] | np.ndarray | None = None,
     ) -> None:
         check_image(img)
-        self.avatar = avatar or make_avatar(img, landmarks, texture_size=TEXTURE_SIZE)
+        self.avatar = avatar or make_avatar(img, landmarks, texture_size=_TEXTURE_SIZE)
         face, rig = self.avatar.face, self.avatar.rig
         if pose is not None:
             rig = _rig_at_rest(face, rig, weight_vector(pose, rig.names))

@@ -19,11 +19,13 @@ from toongeo.pipeline import Rig
 from toongeo.protocols import TextureGeometry
 from toongeo.render import sample_image, srgb_to_linear, uv_to_px
 
-OUTWARD, INWARD = 0.6, 0.35  # cosine to the front beyond which a lip is its red, and below which it is its inner side
-PLAIN = 60.0  # of 255: a colour that differs more from the skin's is a line's and says nothing about the light
-GRAIN, MOST_GRAIN = 0.006, 24.0  # s.d. of the atlas's side; of 255
-FAINT = 0.02  # less of a line is not seen
-INNER_LIP = 0.8  # of the lightness of the lips
+__all__ = ["ClassicalTextureGenerator"]
+
+_OUTWARD, _INWARD = 0.6, 0.35  # cosine to the front beyond which a lip is its red, and below which it is its inner side
+_PLAIN = 60.0  # of 255: a colour that differs more from the skin's is a line's and says nothing about the light
+_GRAIN, _MOST_GRAIN = 0.006, 24.0  # s.d. of the atlas's side; of 255
+_FAINT = 0.02  # less of a line is not seen
+_INNER_LIP = 0.8  # of the lightness of the lips
 
 
 class ClassicalTextureGenerator:
@@ -56,17 +58,17 @@ class ClassicalTextureGenerator:
         eyes = model.region("eye_left") | model.region("eye_right")
         brows = model.region("brow_left") | model.region("brow_right")
         skin = model.region("face") & ~model.region("lips") & ~eyes & ~brows & (normals[:, 2] > 0)
-        lip = model.region("lips") & (normals[:, 2] > OUTWARD)
+        lip = model.region("lips") & (normals[:, 2] > _OUTWARD)
         linear = srgb_to_linear((colours / 255).astype(np.float32)).mean(1)
-        plain = skin & (np.abs(colours - np.median(colours[skin], axis=0)).max(1) < PLAIN)
+        plain = skin & (np.abs(colours - np.median(colours[skin], axis=0)).max(1) < _PLAIN)
         self._ratio = ShadingRatio(linear, V, model.faces, plain)
         self._zones = lid_zones(model, rig)
         clean = lid_skin(model, colours, self._zones)
         self._inner = np.any([model.region(name) for name in MOUTH_PARTS], axis=0)
-        inner_lip = model.region("lips") & (normals[:, 2] < INWARD) & ~self._inner
+        inner_lip = model.region("lips") & (normals[:, 2] < _INWARD) & ~self._inner
         for part in (model.region("lip_upper"), model.region("lip_lower")):
             own = lip & part if (lip & part).any() else lip
-            clean[inner_lip & part] = INNER_LIP * np.median(colours[own], axis=0)
+            clean[inner_lip & part] = _INNER_LIP * np.median(colours[own], axis=0)
         clean = mouth_palette(model, V, clean, lip, skin)
         self._fresh = (self._inner | inner_lip).astype(np.float32)
         raster = AtlasRaster(model.faces, model.uv, model.uv_faces, self.size)
@@ -123,7 +125,7 @@ class ClassicalTextureGenerator:
         return [
             Stroke(lid_rings(self.model, name).upper[2], self._lash_colour, LINE, float(strength))
             for name, strength in zip(SIDES, closing, strict=True)
-            if strength > FAINT
+            if strength > _FAINT
         ]
 
     def _extra(self, closing: np.ndarray, parted: float) -> np.ndarray:
@@ -142,8 +144,8 @@ def _vertex_colours(model: MorphableModel, texture: np.ndarray) -> np.ndarray:
 def _add_grain(clean: np.ndarray, texture: np.ndarray, zones: np.ndarray) -> None:
     """Give smooth lids, in place, the fine texture of the skin below the eye."""
     pixels = texture.astype(np.float32)
-    detail = pixels - cv2.GaussianBlur(pixels, (0, 0), GRAIN * len(texture))
-    detail[np.abs(detail).max(2) > MOST_GRAIN] = 0  # lines are no grain
+    detail = pixels - cv2.GaussianBlur(pixels, (0, 0), _GRAIN * len(texture))
+    detail[np.abs(detail).max(2) > _MOST_GRAIN] = 0  # lines are no grain
     for zone in zones:
         box, share = _boxed(zone)
         height = share.shape[0]

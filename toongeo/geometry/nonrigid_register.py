@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.geometry.facing_surface import FACING, FacingSurface
 from toongeo.geometry.landmark_matrix import landmark_matrix
 from toongeo.geometry.operators.vertex_normals import vertex_normals
@@ -18,12 +19,10 @@ from toongeo.geometry.validate_mesh import validate_mesh
 
 __all__ = ["RegisteredMesh", "nonrigid_register"]
 
-Floats = NDArray[np.float64]
-
-STIFFNESS = (0.3, 0.03, 0.003, 0.0003)
-ITERATIONS = 4
-MATCHED = 0.1  # units: a partner farther away in the end is none
-CONVERGED = 1e-3  # units: mean step of the last iteration
+_STIFFNESS = (0.3, 0.03, 0.003, 0.0003)
+_ITERATIONS = 4
+_MATCHED = 0.1  # units: a partner farther away in the end is none
+_CONVERGED = 1e-3  # units: mean step of the last iteration
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +79,8 @@ def nonrigid_register(
     *,
     fitted: ArrayLike | None = None,
     landmark_weight: ArrayLike = 1.0,
-    stiffness: Sequence[float] = STIFFNESS,
-    iterations: int = ITERATIONS,
+    stiffness: Sequence[float] = _STIFFNESS,
+    iterations: int = _ITERATIONS,
 ) -> RegisteredMesh:
     """Deform a mesh onto another one by landmarks and regularized non-rigid closest points.
 
@@ -155,7 +154,7 @@ def nonrigid_register(
     X, step = shell.laid_on(surface, (points - shift) @ rotation / (scale * unit), mask, levels, iterations)
     triangles, bary, cosines = surface.closest(X, vertex_normals(X, corners))
     distances = np.linalg.norm(surface.points(triangles, bary) - X, axis=1)
-    matched = (cosines >= FACING) & ~surface.at_border(triangles, bary) & (distances <= MATCHED)
+    matched = (cosines >= FACING) & ~surface.at_border(triangles, bary) & (distances <= _MATCHED)
     if mask.any() and not matched[mask].any():
         raise ValueError(
             "V_target: expected a surface on which the source can be laid, with triangles oriented like the source's, "
@@ -175,7 +174,7 @@ def nonrigid_register(
         rotation=rotation,
         shift=shift,
         iterations=len(levels) * iterations,
-        status="converged" if step <= CONVERGED else "iteration limit",
+        status="converged" if step <= _CONVERGED else "iteration limit",
     )
 
 

@@ -9,7 +9,7 @@ __all__ = ["degenerate_triangles", "validate_faces", "validate_mesh", "validate_
 
 # Twice the area over the longest edge squared: the sine of the smallest angle, about. Below it, one rounding
 # error decides the normal.
-DEGENERATE = 1e-12
+_DEGENERATE = 1e-12
 
 
 def validate_mesh(
@@ -95,4 +95,4 @@ def degenerate_triangles(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArra
     twice_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     sides = np.stack([b - a, c - b, a - c], axis=1)
     longest = np.einsum("fij,fij->fi", sides, sides).max(axis=1)
-    return twice_area <= DEGENERATE * longest
+    return twice_area <= _DEGENERATE * longest

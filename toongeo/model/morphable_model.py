@@ -11,6 +11,8 @@ from toongeo.geometry.one_thread import one_thread
 from toongeo.model.eyeball_template import EyeballTemplate
 from toongeo.model.face_prior import FacePrior
 
+__all__ = ["MorphableModel"]
+
 
 @dataclass(frozen=True, eq=False)
 class MorphableModel:

@@ -10,7 +10,7 @@ from toongeo.io import Scene, SceneMesh, read_image, read_obj, write_obj
 def test_round_trip(tmp_path, scene):
     path = tmp_path / "Gesicht ü.obj"
     write_obj(path, scene)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["Gesicht ü.mtl", "Gesicht ü.obj", "Gesicht ü.png"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["Gesicht ü.mtl", "Gesicht ü.obj", "Gesicht ü_texture.png"]
     got = read_obj(path)
     np.testing.assert_array_equal(got.vertices, np.concatenate([mesh.vertices for mesh in scene.meshes]))
     np.testing.assert_array_equal(got.uv, np.concatenate([m.uv for m in scene.meshes if m.uv is not None]))
@@ -22,12 +22,12 @@ def test_round_trip(tmp_path, scene):
         np.testing.assert_array_equal(got.uv_faces[own], -1 if mesh.uv is None else mesh.uv_faces + uv)
         vertex += len(mesh.vertices)
         uv += 0 if mesh.uv is None else len(mesh.uv)
-    np.testing.assert_array_equal(read_image(tmp_path / "Gesicht ü.png"), scene.meshes[0].texture)
+    np.testing.assert_array_equal(read_image(tmp_path / "Gesicht ü_texture.png"), scene.meshes[0].texture)
 
 
 def test_a_name_cannot_write_lines_of_its_own(tmp_path, scene):
     write_obj(tmp_path / "a\nv 0 0 0\u2028.obj", scene)
-    assert {p.name for p in tmp_path.iterdir()} == {"a\nv 0 0 0\u2028.obj", "a_v 0 0 0_.mtl", "a_v 0 0 0_.png"}
+    assert {p.name for p in tmp_path.iterdir()} == {"a\nv 0 0 0\u2028.obj", "a_v 0 0 0_.mtl", "a_v 0 0 0__texture.png"}
     assert "mtllib a_v 0 0 0_.mtl" in (tmp_path / "a\nv 0 0 0\u2028.obj").read_text().split("\n")
     got = read_obj(tmp_path / "a\nv 0 0 0\u2028.obj")
     assert len(got.vertices) == sum(len(mesh.vertices) for mesh in scene.meshes)
@@ -44,9 +44,9 @@ def test_material_library(tmp_path, scene):
     write_obj(tmp_path / "a.obj", Scene(meshes))
     mtl = (tmp_path / "a.mtl").read_text().splitlines()
     assert [line for line in mtl if line.startswith("map_Kd")] == [
-        "map_Kd a.png",
-        "map_Kd a.png",
-        "map_Kd a_1.png",
+        "map_Kd a_texture.png",
+        "map_Kd a_texture.png",
+        "map_Kd a_texture_1.png",
     ]
     obj = (tmp_path / "a.obj").read_text().splitlines()
     assert "mtllib a.mtl" in obj and "o my_mesh" in obj
@@ -132,7 +132,7 @@ def test_places(tmp_path, scene):
         read_obj(tmp_path / "none.obj")
     with pytest.raises(ValueError, match=r"path: expected a name that ends in \.obj, got .*a\.txt"):
         write_obj(tmp_path / "a.txt", scene)
-    (tmp_path / "a.png").mkdir()
-    with pytest.raises(OSError, match=r"cannot write .*a\.png: "):
+    (tmp_path / "a_texture.png").mkdir()
+    with pytest.raises(OSError, match=r"cannot write .*a_texture\.png: "):
         write_obj(tmp_path / "a.obj", scene)
-    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a_texture.png"]

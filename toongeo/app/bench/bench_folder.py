@@ -12,8 +12,8 @@ from toongeo.io import read_image, read_landmarks
 
 __all__ = ["BenchPicture", "bench_folder"]
 
-PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
-LANDMARKS = (".pts", ".txt", ".csv", ".npy")
+_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
+_LANDMARKS = (".pts", ".txt", ".csv", ".npy")
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ def bench_folder(folder: Path) -> list[BenchPicture]:
     """
     if not folder.is_dir():
         raise NotADirectoryError(f"folder: expected a folder of pictures, got {folder}")
-    pictures = sorted(path for path in folder.iterdir() if path.suffix.lower() in PICTURES and path.is_file())
+    pictures = sorted(path for path in folder.iterdir() if path.suffix.lower() in _PICTURES and path.is_file())
     if not pictures:
-        raise ValueError(f"folder: expected pictures ({', '.join(PICTURES)}), got none in {folder}")
+        raise ValueError(f"folder: expected pictures ({', '.join(_PICTURES)}), got none in {folder}")
     stems: dict[str, Path] = {}
     found = []
     for picture in pictures:
@@ -59,10 +59,10 @@ def bench_folder(folder: Path) -> list[BenchPicture]:
                 f"got {stems[picture.stem].name} and {picture.name} in {folder}"
             )
         stems[picture.stem] = picture
-        beside = [path for path in (picture.with_suffix(suffix) for suffix in LANDMARKS) if path.is_file()]
+        beside = [path for path in (picture.with_suffix(suffix) for suffix in _LANDMARKS) if path.is_file()]
         if not beside:
             raise ValueError(
-                f"folder: expected landmarks ({', '.join(LANDMARKS)}) beside each picture, "
+                f"folder: expected landmarks ({', '.join(_LANDMARKS)}) beside each picture, "
                 f"got none for {picture.name} in {folder}"
             )
         found.append(BenchPicture(picture, beside[0]))

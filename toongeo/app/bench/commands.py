@@ -39,10 +39,19 @@ def _add_folder(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, metavar="FOLDER", help=about)
 
 
-def _check_output(output: Path | None) -> None:
-    """Refuse before the work what could not be written after it."""
-    if output is not None and output.exists() and not output.is_dir():
+def _check_output(options: argparse.Namespace, table: str | None = None) -> None:
+    """Refuse before the work what could not be written after it, would lie among the pictures, or replace a file."""
+    from toongeo.app.bench.save_table import check_table
+
+    output, folder = options.output, options.folder
+    if output is None or not output.exists():
+        return
+    if not output.is_dir():
         raise NotADirectoryError(f"output: expected a folder, got the file {output}")
+    if folder.exists() and output.samefile(folder):
+        raise ValueError(f"output: expected another folder than that of the pictures, got {output}")
+    if table is not None:
+        check_table(table, output)
 
 
 # The commands import what they need when they run, so that `toongeo --help` answers at once.
@@ -52,7 +61,7 @@ def _table1(options: argparse.Namespace) -> None:
     from toongeo.app.bench.save_table import save_table
     from toongeo.app.bench.tables import table1
 
-    _check_output(options.output)
+    _check_output(options, "table1")
     save_table(table1(options.folder, options.eos), "table1", options.output)
 
 
@@ -60,7 +69,7 @@ def _table2(options: argparse.Namespace) -> None:
     from toongeo.app.bench.save_table import save_table
     from toongeo.app.bench.tables import table2
 
-    _check_output(options.output)
+    _check_output(options, "table2")
     save_table(table2(options.folder, options.eos), "table2", options.output)
 
 
@@ -68,7 +77,7 @@ def _table4(options: argparse.Namespace) -> None:
     from toongeo.app.bench.save_table import save_table
     from toongeo.app.bench.tables import table4
 
-    _check_output(options.output)
+    _check_output(options, "table4")
     save_table(table4(options.folder), "table4", options.output)
 
 
@@ -76,14 +85,14 @@ def _caricature(options: argparse.Namespace) -> None:
     from toongeo.app.bench.caricature_table import caricature_table
     from toongeo.app.bench.save_table import save_table
 
-    _check_output(options.output)
+    _check_output(options, "caricature")
     save_table(caricature_table(options.folder), "caricature", options.output)
 
 
 def _pairs(options: argparse.Namespace) -> None:
     from toongeo.app.bench.pair_sheets import KEY, QUESTIONS, pair_sheets
 
-    _check_output(options.output)
+    _check_output(options)
     sheets = pair_sheets(options.folder, options.output, seed=options.seed, against=options.against)
     print(f"wrote {len(sheets)} sheets, answers.csv and {KEY} to {options.output}")
     print("Answer A or B for each sheet and question; leave the key closed until all answers are in:")

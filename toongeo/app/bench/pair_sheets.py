@@ -29,9 +29,9 @@ QUESTIONS = {
     "similarity": "Which looks more like the input?",
 }
 BASELINES = ("coarse", "adjust")
-KEY, ANSWERS = ".key.json", "answers.csv"
-YAWS = (0.0, 40.0)
-INK, PAPER, GUTTER = (40, 40, 40), 255, 24
+KEY, _ANSWERS = ".key.json", "answers.csv"
+_YAWS = (0.0, 40.0)
+_INK, _PAPER, _GUTTER = (40, 40, 40), 255, 24
 
 
 def pair_sheets(folder: Path, output: Path, *, seed: int = 0, against: str = "coarse", tile: int = 360) -> list[Path]:
@@ -65,21 +65,23 @@ def pair_sheets(folder: Path, output: Path, *, seed: int = 0, against: str = "co
     ValueError
         If the folder holds no pictures or lacks landmarks, or the baseline or the seed is not one.
     OSError
-        If the output holds answers already, which would be lost, or cannot be written.
+        If the output holds sheets, a key or answers already, which would be lost, or cannot be written.
     """
     if against not in BASELINES:
         raise ValueError(f"against: expected one of {', '.join(BASELINES)}, got {against!r}")
     if seed < 0:
         raise ValueError(f"seed: expected an integer >= 0, got {seed}")
     pictures = bench_folder(folder)
-    if (output / ANSWERS).exists():
-        raise FileExistsError(f"output: {output / ANSWERS} is there already; choose another folder or move it")
+    names = [f"pair-{k + 1:02d}" for k in range(len(pictures))]
+    for path in (output / _ANSWERS, output / KEY, *(output / f"{name}.png" for name in names)):
+        if path.exists():
+            raise FileExistsError(f"output: {path} is there already; choose another folder or move it")
     rng = np.random.default_rng(seed)
     order, ours_first = rng.permutation(len(pictures)), rng.permutation(len(pictures)) % 2 == 0
     sheets: dict[str | os.PathLike[str], bytes] = {}
     pairs: dict[str, dict[str, str]] = {}
     for k, which in enumerate(tqdm(order, unit="pair", leave=False)):
-        picture, name = pictures[which], f"pair-{k + 1:02d}"
+        picture, name = pictures[which], names[k]
         img, landmarks = picture.read()
         try:
             ours, baseline = _rivals(img, landmarks, against)
@@ -95,7 +97,7 @@ def pair_sheets(folder: Path, output: Path, *, seed: int = 0, against: str = "co
         {
             **sheets,
             output / KEY: (json.dumps(key, indent=1) + "\n").encode(),
-            output / ANSWERS: _form(list(pairs)).encode(),
+            output / _ANSWERS: _form(list(pairs)).encode(),
         }
     )
     return [Path(sheet) for sheet in sheets]
@@ -114,10 +116,10 @@ def _sheet(
     img: NDArray[np.uint8], landmarks: NDArray[np.float64], pair: tuple[Avatar, Avatar], tile: int
 ) -> NDArray[np.uint8]:
     """Input over A and B; (2 * tile, 4 * tile + 24, 3)."""
-    gutter = np.full((tile, GUTTER, 3), PAPER, np.uint8)
+    gutter = np.full((tile, _GUTTER, 3), _PAPER, np.uint8)
     left, right = (_views(avatar, letter, tile) for avatar, letter in zip(pair, "AB", strict=True))
     faces = np.hstack([left, gutter, right])
-    top = np.full_like(faces, PAPER)
+    top = np.full_like(faces, _PAPER)
     first = (faces.shape[1] - tile) // 2
     # No landmarks are drawn: they would tell the judges what was fitted.
     top[:, first : first + tile] = face_crop(img, landmarks, tile).pixels
@@ -125,8 +127,8 @@ def _sheet(
 
 
 def _views(avatar: Avatar, letter: str, tile: int) -> NDArray[np.uint8]:
-    views = np.ascontiguousarray(np.hstack([avatar.render(size=tile, yaw=yaw) for yaw in YAWS]))
-    cv2.putText(views, letter, (10, 34), cv2.FONT_HERSHEY_SIMPLEX, 1.1, INK, 2, cv2.LINE_AA)
+    views = np.ascontiguousarray(np.hstack([avatar.render(size=tile, yaw=yaw) for yaw in _YAWS]))
+    cv2.putText(views, letter, (10, 34), cv2.FONT_HERSHEY_SIMPLEX, 1.1, _INK, 2, cv2.LINE_AA)
     return views
 
 

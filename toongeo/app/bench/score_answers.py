@@ -13,8 +13,8 @@ from toongeo.app.bench.pair_sheets import QUESTIONS
 
 __all__ = ["Preference", "preferences_text", "score_answers"]
 
-COLUMNS = ("picture", "question", "answer")
-SIDES = {"ours", "baseline"}
+_COLUMNS = ("picture", "question", "answer")
+_SIDES = {"ours", "baseline"}
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def score_answers(answers: Path, key: Path) -> list[Preference]:
         If a file cannot be read.
     """
     sides = _sides(key)
-    counts = {question: {side: 0 for side in SIDES} for question in QUESTIONS}
+    counts = {question: {side: 0 for side in _SIDES} for question in QUESTIONS}
     for where, picture, question, answer in _answered(answers):
         for name, value, known in (
             ("picture", picture, sides), ("question", question, counts), ("answer", answer, ("A", "B")),
@@ -97,7 +97,7 @@ def _sides(key: Path) -> dict[str, dict[str, str]]:
         sides = {name: {letter: pair[letter] for letter in "AB"} for name, pair in pairs.items()}
     except (ValueError, KeyError, TypeError, AttributeError):
         raise ValueError(f"key: expected the key that `toongeo bench pairs` wrote, got {key}") from None
-    if not sides or any(set(pair.values()) != SIDES for pair in sides.values()):
+    if not sides or any(set(pair.values()) != _SIDES for pair in sides.values()):
         raise ValueError(f"key: expected ours and baseline for the letters of each pair, got others in {key}")
     return sides
 
@@ -108,16 +108,16 @@ def _answered(path: Path) -> list[tuple[str, str, str, str]]:
         rows = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
     except (UnicodeDecodeError, csv.Error) as error:
         raise ValueError(f"answers: expected a CSV file, but {path} is not ({error})") from error
-    if not rows or tuple(cell.strip() for cell in rows[0]) != COLUMNS:
+    if not rows or tuple(cell.strip() for cell in rows[0]) != _COLUMNS:
         got = ",".join(rows[0]) if rows else "nothing"
-        raise ValueError(f"answers: expected the heading {','.join(COLUMNS)}, got {got[:60]!r} in {path}")
+        raise ValueError(f"answers: expected the heading {','.join(_COLUMNS)}, got {got[:60]!r} in {path}")
     found = []
     for number, row in enumerate(rows[1:], start=2):
         cells, where = [cell.strip() for cell in row], f"line {number} of {path}"
-        if not any(cells) or tuple(cells) == COLUMNS:  # an empty line, or the heading of another form
+        if not any(cells) or tuple(cells) == _COLUMNS:  # an empty line, or the heading of another form
             continue
-        if len(cells) != len(COLUMNS):
-            raise ValueError(f"answers: expected {len(COLUMNS)} cells, got {len(cells)} in {where}")
+        if len(cells) != len(_COLUMNS):
+            raise ValueError(f"answers: expected {len(_COLUMNS)} cells, got {len(cells)} in {where}")
         if cells[2]:
             found.append((where, cells[0], cells[1].lower(), cells[2].upper()))
     return found

@@ -7,6 +7,7 @@ import time
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.arrays import Floats
 from toongeo.caricature.blendshapes.initial_blendshapes import initial_blendshapes
 from toongeo.caricature.blendshapes.optimize_blendshapes import (
     BlendshapeWeights,
@@ -25,8 +26,6 @@ from toongeo.pipeline.rig.rig import Rig
 from toongeo.protocols import LandmarkMapper
 
 __all__ = ["caricature_rig"]
-
-Floats = NDArray[np.float64]
 
 # How far a drawing's lids are apart is a trait, not an expression: they are closed by contact, from where they are.
 _TRAITS = ("eyeBlink", "eyeWide")

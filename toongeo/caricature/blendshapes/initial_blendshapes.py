@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.caricature.blendshapes.landmark_mapper import PartMapper
 from toongeo.caricature.blendshapes.sparse_expression import sparse_expression
 from toongeo.caricature.caricature_fit import CaricatureFit
@@ -25,8 +26,6 @@ from toongeo.protocols import HeadCamera, LandmarkMapper
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["InitialBlendshapes", "initial_blendshapes"]
-
-Floats = NDArray[np.float64]
 
 _PRIOR = 1e-6  # of the fit to F+(L), which is a face of people: it should keep what F+ tells
 _RIDGE = 1e-3

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Delaunay
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.caricature.blendshapes.sparse_expression import sparse_expression
 from toongeo.io.landmark_array import landmark_array
 from toongeo.model.anatomy.parts import SIDES
@@ -20,8 +21,6 @@ from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 
 __all__ = ["Exaggeration", "PartMapper"]
-
-Floats = NDArray[np.float64]
 
 # A face as exaggerated as the drawing asks for: a large identity is cheap, a misfit is not.
 _FREE = FitOptions(max_deviation=12.0, identity_weight=0.05, expression_weight=4.0, prior_weight=1e-6)

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.operators.factor import factor_spd, solve
 
 __all__ = ["shifted_solutions"]
-
-Floats = NDArray[np.float64]
 
 _TOLERANCE = 1e-10
 _ROUNDS = 60

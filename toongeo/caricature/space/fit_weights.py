@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.caricature.space.deformation_representation import full, packed
 from toongeo.caricature.space.encoded_shapes import EncodedShapes
 from toongeo.geometry.one_thread import one_thread
@@ -17,8 +18,6 @@ from toongeo.geometry.operators.small_matrices import product
 from toongeo.geometry.rotations.rotation_exp import right_jacobian, rotation_exp
 
 __all__ = ["WeightFit", "WeightProblem"]
-
-Floats = NDArray[np.float64]
 
 _TOLERANCE = 1e-6  # relative fall of the energy below which a step was the last
 _FIRST_DAMPING = 1e-4  # of the diagonal of the Gauss-Newton matrix

@@ -16,6 +16,16 @@ from toongeo.geometry.operators.uniform_laplacian import uniform_laplacian
 from toongeo.geometry.rotations.ring_rotations import ring_rotations
 from toongeo.geometry.validate_mesh import validate_mesh
 
+__all__ = [
+    "AnchoredMesh",
+    "DEFAULT_WEIGHT",
+    "add_anchors",
+    "anchored_mesh",
+    "checked_rotations",
+    "checked_targets",
+    "turned_pull",
+]
+
 # lambda of Eq. 10, which the paper does not tell. An anchor stops where the pull of the surface meets lambda
 # times its residual. As L has a unit diagonal the pull is a fraction of the displacement, 0.08 of it on a
 # face of 17,000 vertices, so 1000 leaves 1e-4 of the displacement and less than 1e-5 of the face's size.

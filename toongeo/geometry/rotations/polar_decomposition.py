@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.operators.small_matrices import product
 
 __all__ = ["polar_decomposition"]
-
-Floats = NDArray[np.float64]
 
 _CHUNK = 16384  # matrices at a time: few enough for the cache, enough to make the calls cheap
 _STEPS = 3

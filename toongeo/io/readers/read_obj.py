@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 __all__ = ["ObjData", "read_obj"]
 
-Corners = list[tuple[int, int]]
+_Corners = list[tuple[int, int]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +81,7 @@ def read_obj(path: str | os.PathLike[str]) -> ObjData:
     """
     vertices: list[list[float]] = []
     uv: list[list[float]] = []
-    polygons: list[Corners] = []
+    polygons: list[_Corners] = []
     objects: list[str] = []
     owner: list[int] = []
     # Bytes that are not UTF-8 occur in names and comments of old files, where they do no harm.
@@ -121,7 +121,7 @@ def _numbers(words: list[str], count: int) -> list[float]:
     return values
 
 
-def _corners(words: list[str], vertices: int, uv: int) -> Corners:
+def _corners(words: list[str], vertices: int, uv: int) -> _Corners:
     """(vertex, uv) of each corner, 0-based, uv -1 if it has none."""
     if len(words) < 3:
         raise ValueError(f"expected at least 3 corners, got {len(words)}")
@@ -142,7 +142,7 @@ def _index(word: str, count: int) -> int:
     return index
 
 
-def _padded(polygons: list[Corners], column: int) -> NDArray[np.int64]:
+def _padded(polygons: list[_Corners], column: int) -> NDArray[np.int64]:
     lengths = np.array([len(polygon) for polygon in polygons])
     padded = np.full((len(polygons), lengths.max()), -1, dtype=np.int64)
     padded[np.arange(lengths.max()) < lengths[:, None]] = [c[column] for polygon in polygons for c in polygon]

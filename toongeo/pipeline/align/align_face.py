@@ -21,8 +21,10 @@ from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.protocols import HeadCamera
 
-Laplacian = Literal["uniform", "cotangent"]
-RIM_WEIGHT = 0.01  # of the landmarks' weight: what lies between them is interpolated, not seen
+__all__ = ["AlignedFace", "align_face"]
+
+_Laplacian = Literal["uniform", "cotangent"]
+_RIM_WEIGHT = 0.01  # of the landmarks' weight: what lies between them is interpolated, not seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +79,7 @@ def align_face(
     landmarks: np.ndarray,
     *,
     weight: float = 1e4,
-    laplacian: Laplacian = "uniform",
+    laplacian: _Laplacian = "uniform",
     depth: Literal["keep", "scaled"] = "scaled",
     slide: bool = True,
     flow: bool = True,
@@ -107,7 +109,7 @@ def align_face(
         Whether jaw points slide along their contour lines to where the outline of the deformed head is.
         ``landmark_vertices`` of the result tell where they ended.
     flow : bool
-        False: Laplacian deformation alone, as in the paper, which folds lids and lips of strong exaggerations.
+        False: _Laplacian deformation alone, as in the paper, which folds lids and lips of strong exaggerations.
 
     Returns
     -------
@@ -117,7 +119,7 @@ def align_face(
     ------
     ValueError
         If landmarks have another shape, hold infinities or are all missing, the weight is negative or not finite, or
-        the Laplacian or the depth rule is unknown.
+        the _Laplacian or the depth rule is unknown.
     """
     started = time.perf_counter()
     landmarks = landmark_array(landmarks)
@@ -148,7 +150,7 @@ def align_face(
 
 
 def _anchored(
-    fit: FaceFit, V: np.ndarray, at: np.ndarray, landmarks: np.ndarray, weight: float, laplacian: Laplacian
+    fit: FaceFit, V: np.ndarray, at: np.ndarray, landmarks: np.ndarray, weight: float, laplacian: _Laplacian
 ) -> np.ndarray:
     """Vertices with those at the landmarks on them, and the rims between them taken along."""
     seen = np.isfinite(landmarks).all(1)
@@ -159,7 +161,7 @@ def _anchored(
     targets_px = np.vstack([targets_px, fit.project(V[rim]) + rim_shift_px])
     targets_px, depth = keep_rims_apart(fit.model, fit.camera, V, anchors, targets_px, given)
     targets = fit.camera.unproject(targets_px, depth)  # Eq. 11
-    weights = np.where(given, 1.0, RIM_WEIGHT) * weight
+    weights = np.where(given, 1.0, _RIM_WEIGHT) * weight
     return laplacian_align(V, fit.faces, anchors, targets, weight=weights, laplacian=laplacian)  # Eq. 10
 
 

@@ -8,7 +8,9 @@ from toongeo.model import MorphableModel
 from toongeo.model.anatomy.parts import MOUTH_PARTS, SOCKETS
 from toongeo.model.anatomy.rims import opening_rim
 
-REACH = 0.5  # of the lips' size: over this distance into the mouth the lips' own deformation dies out
+__all__ = ["carry_inner_parts"]
+
+_REACH = 0.5  # of the lips' size: over this distance into the mouth the lips' own deformation dies out
 
 
 def carry_inner_parts(model: MorphableModel, before: np.ndarray, after: np.ndarray) -> np.ndarray:
@@ -71,7 +73,7 @@ def _carry_mouth(model: MorphableModel, before: np.ndarray, carried: np.ndarray)
     for name in MOUTH_PARTS:
         inside = model.region(name)
         carried[inside] = placed(before[inside])
-    reach = REACH * np.linalg.norm(before[rim] - middle, axis=1).mean()
+    reach = _REACH * np.linalg.norm(before[rim] - middle, axis=1).mean()
     wall = model.region("mouth_cavity")
     distance, nearest = cKDTree(before[rim]).query(before[wall])
     carried[wall] += np.exp(-((distance / reach) ** 2))[:, None] * residual[nearest]

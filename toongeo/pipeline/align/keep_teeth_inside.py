@@ -8,7 +8,9 @@ import numpy as np
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.straighten_teeth import PARTS
 
-CLEARANCE = 1.05  # how much wider and longer the rows could be without coming out
+__all__ = ["STEP", "STEPS", "enclosed", "keep_teeth_inside"]
+
+_CLEARANCE = 1.05  # how much wider and longer the rows could be without coming out
 STEP, STEPS = 0.95, 14  # by which they shrink at a time, and how often at most: to a half
 
 
@@ -33,7 +35,7 @@ def keep_teeth_inside(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     back = np.array([0.0, 0.0, parts[:, 2].min()])
     sizes = STEP ** np.arange(STEPS)
     for size in sizes:
-        if enclosed(model, skin, back + (parts - back) * [CLEARANCE * size, 1, CLEARANCE * size]).all():
+        if enclosed(model, skin, back + (parts - back) * [_CLEARANCE * size, 1, _CLEARANCE * size]).all():
             break
     kept = V.copy()
     if size < 1:

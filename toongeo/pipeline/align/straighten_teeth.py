@@ -5,6 +5,8 @@ import numpy as np
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import rim_path
 
+__all__ = ["PARTS", "PARTS_OF_RIM", "STRETCH", "straighten_teeth"]
+
 # What hangs on the upper lip's side of the mouth, and what on the lower one's.
 PARTS_OF_RIM = {"lip_upper_inner": ("teeth_upper",), "lip_lower_inner": ("teeth_lower", "tongue")}
 PARTS = tuple(part for parts in PARTS_OF_RIM.values() for part in parts)

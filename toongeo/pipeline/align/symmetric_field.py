@@ -7,6 +7,8 @@ from scipy.spatial.distance import cdist
 
 from toongeo.geometry.one_thread import one_thread
 
+__all__ = ["FieldPrior", "MIRROR", "field_covariance", "most_likely_field"]
+
 MIRROR = np.array([-1.0, 1.0, 1.0])  # the sagittal plane of the model frame is x = 0
 
 

@@ -6,8 +6,9 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from toongeo.arrays import Floats
 from toongeo.io.check_landmarks import check_landmarks
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.ibug68 import OUTER_EYES
@@ -17,8 +18,6 @@ from toongeo.pipeline.fit.losses.nlopt_minimize import nlopt_minimize
 from toongeo.protocols import HeadCamera
 
 __all__ = ["ADJUSTMENTS", "DistanceLoss", "adjust_coefficients"]
-
-Floats = NDArray[np.float64]
 
 ADJUSTMENTS = ("expression", "identity+expression")
 

@@ -30,8 +30,6 @@ from toongeo.protocols import Coefficients, Regressor
 
 __all__ = ["fit_3dmm"]
 
-Floats = NDArray[np.float64]
-
 
 @overload
 def fit_3dmm(

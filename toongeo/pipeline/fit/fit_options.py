@@ -17,8 +17,8 @@ __all__ = ["FitOptions", "changed_options"]
 
 
 _MAY_BE_ZERO = ("jaw_weight", "jaw_tangent")
-CONTOURS = ("lines", "silhouette")
-CAMERAS = ("orthographic", "perspective")
+_CONTOURS = ("lines", "silhouette")
+_CAMERAS = ("orthographic", "perspective")
 _COUNTS = ("max_passes", "max_evaluations")
 _NUMBERS = (
     "landmark_weight", "prior_weight", "landmark_deviation", "pitch_deviation", "identity_weight",
@@ -115,8 +115,8 @@ class FitOptions:
             check_positive("max_seconds", self.max_seconds)
         _known("robust", self.robust, (None, *KERNELS))
         _known("adjust", self.adjust, (None, *ADJUSTMENTS))
-        _known("camera", self.camera, CAMERAS)
-        _known("contour", self.contour, CONTOURS)
+        _known("camera", self.camera, _CAMERAS)
+        _known("contour", self.contour, _CONTOURS)
         self._check_lens()
         named = isinstance(self.scheme, str)
         if named:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
@@ -19,8 +20,6 @@ from toongeo.pipeline.fit.photometric.photometric_problem import PhotometricProb
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 
 __all__ = ["photometric_fit"]
-
-Floats = NDArray[np.float64]
 
 
 def photometric_fit(

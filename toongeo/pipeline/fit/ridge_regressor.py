@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.model.anatomy.visible_landmarks import visible_landmarks
@@ -18,8 +19,6 @@ from toongeo.protocols import Coefficients
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["RidgeRegressor", "train_ridge_regressor"]
-
-Floats = NDArray[np.float64]
 
 _FEWEST = 6
 _IDENTITY_DEVIATION = 0.7  # of the faces it learns from, standard deviations

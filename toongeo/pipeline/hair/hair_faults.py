@@ -1,8 +1,8 @@
 """Why no hair can be built from a mask."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Mask
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.above_nape import above_nape
 from toongeo.pipeline.hair.plane.depth_maps import silhouette
@@ -12,7 +12,6 @@ from toongeo.pipeline.hair.plane.working_plane import WorkingPlane, working_plan
 
 __all__ = ["hair_faults"]
 
-Mask = NDArray[np.bool_]
 _TOPPED = 0.5  # of the columns over the crown that hair tops: with less the head is bald, or the mask wrong
 _INNER = np.r_[27:68]  # nose, eyes and mouth
 _OVER_FACE = 0.3  # of these landmarks may lie under hair

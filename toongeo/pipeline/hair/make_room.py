@@ -3,8 +3,8 @@
 import dataclasses
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Mask
 from toongeo.geometry import vertex_normals
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.above_nape import above_nape
@@ -20,7 +20,6 @@ from toongeo.protocols import FaceLabel, FaceParse
 
 __all__ = ["make_room"]
 
-Mask = NDArray[np.bool_]
 _SKIN = tuple(
     label for label in FaceLabel if label not in (FaceLabel.BACKGROUND, FaceLabel.HAIR, FaceLabel.OTHER, FaceLabel.HAT)
 )

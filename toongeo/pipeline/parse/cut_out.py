@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["cut_out"]
+from toongeo.arrays import Mask
 
-Mask = NDArray[np.bool_]
+__all__ = ["cut_out"]
 
 _PASSES = 2
 _FEWEST = 16  # px that either side needs for its five Gaussians

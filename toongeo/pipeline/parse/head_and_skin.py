@@ -8,11 +8,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Mask
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.cut_out import cut_out
 from toongeo.pipeline.parse.face_zones import FaceZones
-from toongeo.pipeline.parse.masks import Mask, grown
+from toongeo.pipeline.parse.guided_filter import guided_filter
+from toongeo.pipeline.parse.masks import grown
 from toongeo.pipeline.parse.skin_surface import colour_mode, skin_surface
 from toongeo.pipeline.parse.working_view import WorkingView
 
@@ -161,6 +163,6 @@ def _one_piece(mask: Mask, core: Mask) -> Mask:
 def _trust(view: WorkingView, mask: Mask) -> NDArray[np.float32]:
     """1 where an edge-aware filter leaves the mask as it is, 0 where it leaves a half."""
     radius = max(2, round(2 * _EDGE * view.head))
-    guide = view.pixels.astype(np.float32) / 255
-    soft = cv2.ximgproc.guidedFilter(guide, mask.astype(np.float32), radius, _SOFTNESS)
+    guide = view.pixels.astype(np.float32) / np.float32(255)
+    soft = guided_filter(guide, mask.astype(np.float32), radius, _SOFTNESS)
     return np.clip(np.abs(2 * soft - 1), 0, 1) * ((soft > 0.5) == mask)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SkinSurface", "colour_mode", "skin_surface"]
+from toongeo.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["SkinSurface", "colour_mode", "skin_surface"]
 
 _PASSES = 6
 _TIGHTEST, _LOOSEST = 4.0, 14.0  # Lab units: what skin may scatter

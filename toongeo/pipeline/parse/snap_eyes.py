@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from toongeo.arrays import Floats
+from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import LID_RIMS
 from toongeo.pipeline.parse.lids.eye_boundary import EyeBoundary, eye_boundary
@@ -15,8 +17,7 @@ from toongeo.protocols import FaceLabel, FaceParse
 
 __all__ = ["snap_eyes"]
 
-Floats = NDArray[np.float64]
-Mode = Literal["arc", "nearest"]
+_Mode = Literal["arc", "nearest"]
 
 # The lids of each eye run from the viewer's left to the right, so that the upper one is on the left hand.
 _EYES = tuple(
@@ -28,7 +29,7 @@ _FARTHEST = 0.3  # outer-eye distances that its middle may be off
 _WIDTHS, _RAGGED = (0.4, 5.0), 1.3  # of the landmarks' width; longest outline, in those of its convex hull
 
 
-def snap_eyes(landmarks: ArrayLike, parse: FaceParse, *, mode: Mode = "arc") -> Floats:
+def snap_eyes(landmarks: ArrayLike, parse: FaceParse, *, mode: _Mode = "arc") -> Floats:
     """Move each eye landmark to the boundary of the segmented eye, if there is one.
 
     An eye stays as it is where the segmentation does not look like it: too far away, too small or large, ragged, or
@@ -69,8 +70,8 @@ def snap_eyes(landmarks: ArrayLike, parse: FaceParse, *, mode: Mode = "arc") -> 
     True
     """
     points = landmark_array(landmarks)
-    if mode not in get_args(Mode):
-        raise ValueError(f"mode: expected one of {get_args(Mode)}, got {mode!r}")
+    if mode not in get_args(_Mode):
+        raise ValueError(f"mode: expected one of {get_args(_Mode)}, got {mode!r}")
     unit = _outer_eye_distance(points)
     snapped = points.copy()
     for label, upper, lower in _EYES:
@@ -160,6 +161,4 @@ def _corners(boundary: EyeBoundary, points: Floats, across: Floats, up: Floats) 
 
 def _at_fractions(way: Floats, lid: Floats) -> Floats:
     """Points (k, 2) of a polyline at the arc lengths, as fractions, that the points of a lid (k, 2) have on it."""
-    lengths = [np.r_[0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))] for line in (way, lid)]
-    on_way, on_lid = (length / max(length[-1], 1e-12) for length in lengths)
-    return np.column_stack([np.interp(on_lid, on_way, way[:, k]) for k in range(2)])
+    return interpolated(arc_shares(lid), arc_shares(way), way)

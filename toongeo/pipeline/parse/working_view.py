@@ -8,9 +8,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["WorkingView", "working_view"]
+from toongeo.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["WorkingView", "working_view"]
 
 _MARGIN = 0.5  # of the head's size, on all sides: so far its hair is looked for
 

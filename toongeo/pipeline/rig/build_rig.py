@@ -15,6 +15,8 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.feature_gains import feature_gains
 from toongeo.pipeline.rig.rig import Rig
 
+__all__ = ["AT_ONCE", "build_rig"]
+
 AT_ONCE = 5  # expressions solved for together: 15 right-hand sides still fit the cache
 
 

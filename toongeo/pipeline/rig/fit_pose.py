@@ -6,7 +6,9 @@ from scipy.optimize import lsq_linear
 from toongeo.geometry.one_thread import one_thread
 from toongeo.pipeline.rig.rig import Rig
 
-RIDGE = 1e-6  # of the mean square of the blendshapes: decides between expressions that do the same
+__all__ = ["fit_pose"]
+
+_RIDGE = 1e-6  # of the mean square of the blendshapes: decides between expressions that do the same
 
 
 def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
@@ -38,6 +40,6 @@ def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
     with one_thread():
         gram, right = (B @ B.T).astype(np.float64), (B @ motion.astype(np.float32)).astype(np.float64)
         # The normal equations hold all of the problem: with a root of the Gram matrix it is one of 46 rows.
-        root = np.linalg.cholesky(gram + RIDGE * np.trace(gram) * np.eye(len(gram)))
+        root = np.linalg.cholesky(gram + _RIDGE * np.trace(gram) * np.eye(len(gram)))
         solution = lsq_linear(root.T, np.linalg.solve(root, right), bounds=(0.0, 1.0), method="bvls")
     return np.asarray(solution.x)

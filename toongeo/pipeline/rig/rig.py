@@ -12,6 +12,8 @@ from toongeo.model.expression_weights import expression_weights
 from toongeo.pipeline.rig.add_rows import add_rows
 from toongeo.pipeline.rig.weight_vector import weight_vector
 
+__all__ = ["Rig"]
+
 
 @dataclass(frozen=True, eq=False)
 class Rig:

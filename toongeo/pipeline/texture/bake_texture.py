@@ -18,12 +18,14 @@ from toongeo.protocols import FaceParse
 from toongeo.render import Fragments, interpolate, rasterize, sample_image, uv_to_px
 from toongeo.render.interpolate import blend_corners
 
-SIZES = (32, 8192)  # texels; in a smaller atlas the eyes would be lost, a larger one takes gigabytes
+__all__ = ["bake_texture", "check_size"]
+
+_SIZES = (32, 8192)  # texels; in a smaller atlas the eyes would be lost, a larger one takes gigabytes
 # Cosines to the viewer between which a texel's trust in the picture grows from 0 to 1.
-OBLIQUE, FRONTAL = 0.15, 0.45
+_OBLIQUE, _FRONTAL = 0.15, 0.45
 # By how much an expression may enlarge a triangle: up to the first, its drawing stays; from the second, none of it.
-STRETCH = (2.0, 5.0)
-HIDDEN_MM = 3.0  # how far behind the visible surface a texel may lie and still be taken as seen
+_STRETCH = (2.0, 5.0)
+_HIDDEN_MM = 3.0  # how far behind the visible surface a texel may lie and still be taken as seen
 
 
 def bake_texture(
@@ -102,8 +104,8 @@ def bake_texture(
 
 def check_size(size: int) -> None:
     """Refuse an atlas that is too small, too large, or no integer."""
-    if not (isinstance(size, int | np.integer) and SIZES[0] <= size <= SIZES[1]):
-        raise ValueError(f"size: expected an integer from {SIZES[0]} to {SIZES[1]} texels, got {size!r}")
+    if not (isinstance(size, int | np.integer) and _SIZES[0] <= size <= _SIZES[1]):
+        raise ValueError(f"size: expected an integer from {_SIZES[0]} to {_SIZES[1]} texels, got {size!r}")
 
 
 @lru_cache(maxsize=4)
@@ -116,7 +118,7 @@ class _Places:
 
     def __init__(self, face: AlignedFace, picture: FacePicture, shared: np.ndarray, size: int) -> None:
         self.face, self.picture = face, picture
-        ramp = np.clip((picture.cosines - OBLIQUE) / (FRONTAL - OBLIQUE), 0, 1) * face.region("face")
+        ramp = np.clip((picture.cosines - _OBLIQUE) / (_FRONTAL - _OBLIQUE), 0, 1) * face.region("face")
         depth = face.camera.depth(face.vertices)
         self.front = interpolate(picture.fragments, face.faces, depth)
         self.values = np.column_stack([picture.points, ramp, depth, _footprints(face, picture, size)])
@@ -129,7 +131,7 @@ class _Places:
         px, height, width = at[:, :2], *self.picture.weight.shape
         column = np.clip(np.rint(px[:, 0]), 0, width - 1).astype(int)
         row = np.clip(np.rint(px[:, 1]), 0, height - 1).astype(int)
-        unhidden = ~self.picture.fragments.mask[row, column] | (self.front[row, column] - at[:, 3] < HIDDEN_MM)
+        unhidden = ~self.picture.fragments.mask[row, column] | (self.front[row, column] - at[:, 3] < _HIDDEN_MM)
         inside = (px[:, 0] >= 0) & (px[:, 0] <= width - 1) & (px[:, 1] >= 0) & (px[:, 1] <= height - 1)
         trust = at[:, 2] * at[:, 5] * unhidden * inside
         used = trust > 0
@@ -169,4 +171,4 @@ def _calm(face: AlignedFace, rig: Rig) -> np.ndarray:
     growth = np.max([areas(rest + delta.T) for delta in rig.deltas], axis=0) / neutral
     stretch = np.ones(len(rig.neutral))
     np.maximum.at(stretch, triangles.ravel(), growth.repeat(3))
-    return 1 - np.clip((stretch - STRETCH[0]) / (STRETCH[1] - STRETCH[0]), 0, 1)
+    return 1 - np.clip((stretch - _STRETCH[0]) / (_STRETCH[1] - _STRETCH[0]), 0, 1)

@@ -5,8 +5,9 @@ import pytest
 from scipy.spatial import cKDTree
 
 from tests.conftest import CARTOONS
+from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.metrics import mesh_quality
-from toongeo.model.anatomy.lip_line import along, interpolated, lip_line
+from toongeo.model.anatomy.lip_line import lip_line
 from toongeo.model.expression_weights import preset
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_mouth
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
@@ -78,7 +79,7 @@ def test_sealed_lips_are_as_far_apart_as_told_where_they_are_paired(stages):
     face, _, rig = stages
     line, V = lip_line(face.model), rig.vertices(SEALED)
     upper, lower = V[line.upper], V[line.lower]
-    apart = interpolated(along(lower), along(upper), upper) - lower
+    apart = interpolated(arc_shares(lower), arc_shares(upper), upper) - lower
     assert np.linalg.norm(apart, axis=1).max() < 4 * GAP * width(face.model, V)
 
 
@@ -111,7 +112,7 @@ def test_lips_that_cross_in_the_neutral_face_are_parted(closed_mouth):
     up = _up(line, rig.neutral)
     crossed = rig.neutral.copy()
     down = np.zeros((len(line.vertices), 3))
-    down[: len(line.upper)] = -3 * np.sin(np.pi * along(crossed[line.upper]))[:, None] * up
+    down[: len(line.upper)] = -3 * np.sin(np.pi * arc_shares(crossed[line.upper]))[:, None] * up
     crossed[line.follows] += line.spread @ down
     assert heights(face.model, crossed, up)[0].min() < -0.5
     parted = seal_lips(face, dataclasses.replace(rig, neutral=crossed)).neutral
@@ -180,10 +181,10 @@ def test_a_closed_mouth_is_shut_without_a_change_to_its_picture(closed_mouth):
     skin = ~face.region("mouth_cavity")
     np.testing.assert_allclose(face.project(shut.neutral[skin]), face.project(rig.neutral[skin]), atol=1e-9)
     line = lip_line(face.model)
-    depth = [
-        np.abs(interpolated(along(V[line.lower]), along(V[line.upper]), V[line.upper]) - V[line.lower])[3:-3, 2].max()
-        for V in (rig.neutral, shut.neutral)
-    ]
+    depth = []
+    for V in (rig.neutral, shut.neutral):
+        opposite = interpolated(arc_shares(V[line.lower]), arc_shares(V[line.upper]), V[line.upper])
+        depth.append(np.abs(opposite - V[line.lower])[3:-3, 2].max())
     assert depth[1] < 0.5 * depth[0]
 
 

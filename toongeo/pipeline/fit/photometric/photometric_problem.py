@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.colour.srgb import linear_to_srgb
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
@@ -29,8 +30,6 @@ from toongeo.pipeline.fit.problem.solution import PassState
 from toongeo.pipeline.fit.problem.starting_problem import starting_problem
 
 __all__ = ["PhotometricProblem"]
-
-Floats = NDArray[np.float64]
 
 _ALGORITHM = "LD_LBFGS"
 _MAX_ALBEDO = 3.0  # standard deviations

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.pipeline.fit.photometric.rectified_picture import RectifiedPicture
 
 __all__ = ["skin_likelihood"]
-
-Floats = NDArray[np.float64]
 
 _FLOOR = 0.02  # linear light below which colours are noise
 _SPREADS = np.array([0.6, 0.03, 0.03])  # least spread of skin: log of the luminance, and chromaticity

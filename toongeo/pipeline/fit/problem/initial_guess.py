@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.fit_options import FitOptions
@@ -15,8 +15,6 @@ from toongeo.protocols import Coefficients
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["held_bounds", "likeliest", "posing_trust", "principal_point_of", "start_vector"]
-
-Floats = NDArray[np.float64]
 
 _POSING_PASSES = 4
 

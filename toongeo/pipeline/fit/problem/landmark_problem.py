@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.model.anatomy.landmark_basis import LandmarkBasis
 from toongeo.model.anatomy.visible_landmarks import visible_landmarks
 from toongeo.model.ibug68 import OUTER_EYES
@@ -29,8 +30,6 @@ from toongeo.pipeline.fit.problem.landmark_weights import evened_weights
 from toongeo.pipeline.fit.problem.solution import PassState, Solution
 
 __all__ = ["LandmarkProblem"]
-
-Floats = NDArray[np.float64]
 
 _PITCH_WEIGHT = 4e-6  # of the prior on the pitch, which grows as w_r does
 _GROWTH = 4.0  # a loose first pass bends the face to most of what is odd: the misfit it leaves is a small part

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry import vertex_normals
 from toongeo.model.anatomy.visible_landmarks import jaw_weights
 from toongeo.model.ibug68 import INNER, PARTS
@@ -14,8 +14,6 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.fit_options import FitOptions
 
 __all__ = ["evened_weights", "landmark_weights"]
-
-Floats = NDArray[np.float64]
 
 _CLICK_MM = 1.0  # standard deviation of a click, on the head
 _GUESSED = 0.1  # weight of a jaw point whose whole line is out of sight: the face hides it

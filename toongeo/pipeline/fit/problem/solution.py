@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.protocols import HeadCamera
 
 __all__ = ["PassState", "Solution"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.ibug68 import INNER
 from toongeo.model.morphable_model import MorphableModel
@@ -29,8 +30,6 @@ from toongeo.pipeline.fit.problem.landmark_weights import landmark_weights
 from toongeo.protocols import Coefficients
 
 __all__ = ["starting_problem"]
-
-Floats = NDArray[np.float64]
 
 _FEWEST = 6  # points from which the affine camera of the first pose is overdetermined
 # Inverse distances of a viewer whose focal length is not known, 1/mm: least, first, greatest.

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
+from toongeo.arrays import Integers
 from toongeo.pipeline.hair.colours.panels import Texels, panels, texels
 from toongeo.pipeline.hair.colours.picture_colours import PictureColours
 from toongeo.pipeline.hair.colours.strand_frame import StrandFrame
@@ -14,7 +15,6 @@ from toongeo.pipeline.hair.shell.shell_mesh import ShellMesh
 __all__ = ["hair_texture"]
 
 Floats = NDArray[np.floating]
-Ints = NDArray[np.int64]
 _UNSEEN = 1.25  # texels per mm where the picture shows nothing
 _BEHIND = (-0.2, 0.5)  # cosines away from the viewer between which lights of the picture fade
 _TURNED = (0.3, 0.6)  # cosines to the viewer between which the picture takes over from strands
@@ -22,7 +22,7 @@ _TURNED = (0.3, 0.6)  # cosines to the viewer between which the picture takes ov
 
 def hair_texture(
     plane: WorkingPlane, mesh: ShellMesh, colours: PictureColours, frame: StrandFrame, strands: NDArray[np.float32]
-) -> tuple[NDArray[np.uint8], Floats, Ints]:
+) -> tuple[NDArray[np.uint8], Floats, Integers]:
     """Atlas (H, W, 3) uint8, coordinates (t, 2) and corners (m, 3) into them.
 
     ``strands`` (along, across, 3) is what strands add to the colours, on the whole breadth of the frame's map.

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Integers
 from toongeo.geometry import vertex_normals
 from toongeo.pipeline.hair.shell.shell_mesh import ShellMesh
 from toongeo.render import interpolate, rasterize
@@ -12,7 +13,6 @@ from toongeo.render import interpolate, rasterize
 __all__ = ["Panel", "Texels", "panels", "texels"]
 
 Floats = NDArray[np.floating]
-Ints = NDArray[np.int64]
 
 # Directions in the plane's frame: to the right of the view, up in it, and towards its viewer.
 _VIEWS = np.array(
@@ -46,7 +46,7 @@ class Panel:
     shape : (rows, columns)
     """
 
-    rows: Ints
+    rows: Integers
     view: Floats
     low: Floats
     density: float
@@ -61,8 +61,8 @@ class Panel:
 class Texels:
     """What lies in the texels (k,) of a panel: their number, triangle, point (k, 3) and unit normal (k, 3)."""
 
-    number: Ints
-    triangle: Ints
+    number: Integers
+    triangle: Integers
     points: Floats
     normals: Floats
 

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Mask
 from toongeo.pipeline.hair.plane.masks import nearest_set
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
@@ -13,7 +14,6 @@ from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 __all__ = ["PictureColours", "picture_colours"]
 
 Floats = NDArray[np.floating]
-Mask = NDArray[np.bool_]
 
 _EDGE_MM = 0.8  # along the hair's edge the picture is mixed with what is beside it
 _RARE = 0.0015  # of the hair: colours that are rarer are of something else

@@ -4,14 +4,13 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Mask
 from toongeo.pipeline.hair.plane.masks import dilated, large_pieces, opened, without_holes
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 
 __all__ = ["HairRaster", "hair_raster"]
 
-Mask = NDArray[np.bool_]
 
 _THIN_MM = 1.5  # half the breadth of the thinnest strand: a thinner one is a drawn line
 _TIP_MM = 6.0  # how far from thicker hair a thinner tip may reach

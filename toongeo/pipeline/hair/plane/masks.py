@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Mask
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM
 
 __all__ = [
@@ -20,7 +21,6 @@ __all__ = [
     "without_holes",
 ]
 
-Mask = NDArray[np.bool_]
 Floats = NDArray[np.floating]
 
 

@@ -3,13 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Integers
+
 __all__ = ["boundary_edges", "edges_of", "halved"]
 
 Floats = NDArray[np.floating]
-Ints = NDArray[np.int64]
 
 
-def edges_of(T: Ints) -> tuple[Ints, Ints, Ints]:
+def edges_of(T: Integers) -> tuple[Integers, Integers, Integers]:
     """Edges (e, 2) once each, their number (m, 3) at each triangle (edge k runs from corner k to k + 1), and in how
     many triangles each is (e,)."""
     ends = np.sort(np.stack([T[:, [0, 1]], T[:, [1, 2]], T[:, [2, 0]]], 1), 2)
@@ -18,13 +19,13 @@ def edges_of(T: Ints) -> tuple[Ints, Ints, Ints]:
     return ends.reshape(-1, 2)[first], number.reshape(-1, 3), count
 
 
-def boundary_edges(T: Ints) -> Ints:
+def boundary_edges(T: Integers) -> Integers:
     """Edges (b, 2) that only one triangle has."""
     edges, _, count = edges_of(T)
     return edges[count == 1]
 
 
-def halved(P: Floats, T: Ints, split: NDArray[np.bool_]) -> tuple[Floats, Ints]:
+def halved(P: Floats, T: Integers, split: NDArray[np.bool_]) -> tuple[Floats, Integers]:
     """Points and triangles with a new point in the middle of some edges (of ``edges_of``)."""
     edges, number, _ = edges_of(T)
     middle = np.where(split, len(P) + np.cumsum(split) - 1, -1)
@@ -45,5 +46,5 @@ def halved(P: Floats, T: Ints, split: NDArray[np.bool_]) -> tuple[Floats, Ints]:
     return P, np.vstack(parts)
 
 
-def _triangles(*corners: Ints) -> Ints:
+def _triangles(*corners: Integers) -> Integers:
     return np.column_stack(corners)

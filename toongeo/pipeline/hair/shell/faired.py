@@ -6,6 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from toongeo.arrays import Integers, Mask
 from toongeo.pipeline.hair.shell.edges import boundary_edges, edges_of
 from toongeo.pipeline.hair.shell.sheet_rasters import SheetRasters
 from toongeo.pipeline.hair.shell.sheets import Sheets
@@ -13,8 +14,6 @@ from toongeo.pipeline.hair.shell.sheets import Sheets
 __all__ = ["faired"]
 
 Floats = NDArray[np.floating]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 _ROUNDS, _SHRINK, _SWELL = 20, 0.5, -0.51  # of Taubin 1995: a round keeps what is broad as large as it was
 _FLOOR_MM2 = 1.0  # added to squared lengths of edges, so that none counts for all
@@ -56,13 +55,13 @@ def faired(both: Sheets, rasters: SheetRasters) -> Sheets:
     return _clear(both, X[:n, :2], X[:n, 2], X[behind, 2], rasters)
 
 
-def _inner(T: Ints, shown: Mask, without: Mask) -> Mask:
+def _inner(T: Integers, shown: Mask, without: Mask) -> Mask:
     """Vertices (n,) all of whose triangles are shown, but for some."""
     n = len(without)
     return _touched(T[shown], n) & ~_touched(T[~shown], n) & ~without
 
 
-def _means(X: Floats, faces: Ints, rows: Ints) -> tuple[sp.csr_array, Ints]:
+def _means(X: Floats, faces: Integers, rows: Integers) -> tuple[sp.csr_array, Integers]:
     """Matrix that takes each of these rows to the mean of its neighbours, the nearer the more."""
     a, b = edges_of(faces)[0].T
     weight = 1 / (((X[a] - X[b]) ** 2).sum(1) + _FLOOR_MM2)
@@ -70,7 +69,7 @@ def _means(X: Floats, faces: Ints, rows: Ints) -> tuple[sp.csr_array, Ints]:
     return sp.diags_array(1 / np.asarray(W.sum(1)).ravel()) @ W, rows
 
 
-def _areas(P: Floats, T: Ints) -> Floats:
+def _areas(P: Floats, T: Integers) -> Floats:
     """Twice the areas in the plane."""
     u, v = P[T[:, 1]] - P[T[:, 0]], P[T[:, 2]] - P[T[:, 0]]
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
@@ -90,7 +89,7 @@ def _clear(both: Sheets, P: Floats, front: Floats, back: Floats, rasters: SheetR
     return replace(both, points=P, front=front, back=back)
 
 
-def _touched(T: Ints, n: int) -> Mask:
+def _touched(T: Integers, n: int) -> Mask:
     touched = np.zeros(n, bool)
     touched[T] = True
     return touched

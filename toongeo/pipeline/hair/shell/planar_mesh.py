@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 from skimage.measure import find_contours, points_in_poly
 
+from toongeo.arrays import Integers, Mask
 from toongeo.pipeline.hair.plane.masks import signed
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 
 __all__ = ["planar_mesh"]
 
 Floats = NDArray[np.floating]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 STEP_MM, GRID_MM = 2.8, 7.5  # spacing along outlines, and between the points inside
 RINGS_MM = (1.5, 4.5)  # inside outlines: rows of points, without which a shell that turns there is a washboard
@@ -34,10 +33,10 @@ class _Outlines:
     """Points (k, 2) on outlines, and the pieces (s, 2) between them."""
 
     points: Floats
-    pieces: Ints
+    pieces: Integers
 
 
-def planar_mesh(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask]) -> tuple[Floats, Ints]:
+def planar_mesh(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask]) -> tuple[Floats, Integers]:
     """Conforming Delaunay triangles of a region, along whose parts' outlines there are edges too.
 
     Parameters
@@ -128,11 +127,9 @@ def _inner_points(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask], taken
             for contour in find_contours(soft, level):
                 row = _even(plane.points(contour[:, ::-1]))
                 row = row[plane.sample(distances[0], row) > 1.0]
-                row = (
-                    row[cKDTree(np.vstack([taken, *rows])).query(row)[0] > min(0.45 * STEP_MM, 0.7 * abs(level))]
-                    if len(row)
-                    else row
-                )
+                if len(row):
+                    apart = min(0.45 * STEP_MM, 0.7 * abs(level))
+                    row = row[cKDTree(np.vstack([taken, *rows])).query(row)[0] > apart]
                 rows.append(row)
     coarse = GRID_MM * max(1.0, float(np.sqrt(whole.sum() * CELL_MM**2 / _LARGE_MM2)))
     low, high = plane.low, plane.points(np.array(plane.shape[::-1]))
@@ -152,7 +149,7 @@ def _even(line: Floats) -> Floats:
     return np.column_stack([np.interp(at, length, line[:, k]) for k in range(2)])
 
 
-def _conforming(outline: _Outlines, loose: Floats) -> tuple[Floats, Ints]:
+def _conforming(outline: _Outlines, loose: Floats) -> tuple[Floats, Integers]:
     """Delaunay triangles; pieces of the outlines are halved until each is an edge."""
     points, pieces = outline.points, outline.pieces
     for _ in range(_PASSES):

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Mask
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.above_nape import above_nape
 from toongeo.pipeline.hair.plane.depth_maps import ball_offset, depth_maps, silhouette
@@ -15,7 +16,6 @@ from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 
 __all__ = ["HeadRaster", "Regions", "head_raster", "regions"]
 
-Mask = NDArray[np.bool_]
 Floats = NDArray[np.floating]
 
 CLEAR_MM = 2.0  # between skin, in all expressions, and hair

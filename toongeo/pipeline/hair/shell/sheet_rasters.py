@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import grey_erosion
 
+from toongeo.arrays import Mask
 from toongeo.pipeline.hair.plane.depth_maps import ball_offset
 from toongeo.pipeline.hair.plane.masks import nearest_set, signed
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
@@ -15,7 +16,6 @@ from toongeo.pipeline.hair.shell.regions import CLEAR_MM, HeadRaster, Regions
 __all__ = ["SheetMaps", "SheetRasters"]
 
 Floats = NDArray[np.floating]
-Mask = NDArray[np.bool_]
 
 _WIDE_MM = 5.0  # ball that rolls over the skin where the hairline runs: it bridges the steep side of the cheeks
 _RAISED_MM = 2.0  # of that ball's surface, after it was lowered again

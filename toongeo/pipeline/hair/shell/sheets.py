@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from toongeo.arrays import Integers, Mask
 from toongeo.pipeline.hair.shell.edges import boundary_edges
 from toongeo.pipeline.hair.shell.harmonic import smooth_max, solved
 from toongeo.pipeline.hair.shell.regions import HeadRaster
@@ -14,8 +15,6 @@ from toongeo.pipeline.hair.shell.sheet_rasters import SheetMaps, SheetRasters
 __all__ = ["Sheets", "sheets"]
 
 Floats = NDArray[np.floating]
-Ints = NDArray[np.int64]
-Mask = NDArray[np.bool_]
 
 _LIP_MM = 1.0  # between skin and the edge of hair that lies on it
 _BALL, _PUFF = 0.95, 0.5  # fullness of the whole outline, and of a strand, against a sphere's
@@ -45,7 +44,7 @@ class Sheets:
     """
 
     points: Floats
-    triangles: Ints
+    triangles: Integers
     front: Floats
     back: Floats
     front_shown: Mask
@@ -56,12 +55,12 @@ class Sheets:
 class _Sheet:
     """One sheet's triangles and the vertices (n,) on their border, on the rim, and used at all."""
 
-    triangles: Ints
+    triangles: Integers
     border: Mask
     used: Mask
 
 
-def sheets(P: Floats, T: Ints, rasters: SheetRasters) -> Sheets:
+def sheets(P: Floats, T: Integers, rasters: SheetRasters) -> Sheets:
     """Depths of the hair's front and back over triangles of the plane."""
     shown = rasters.shown(P[T].mean(1))
     rim = np.zeros(len(P), bool)
@@ -95,7 +94,7 @@ def _lip(P: Floats, z: Floats, front: _Sheet, maps: SheetMaps) -> Floats:
     return np.where(away < _FOLD_WITHIN_MM, folded, -np.inf)
 
 
-def _sheet(T: Ints, n: int) -> _Sheet:
+def _sheet(T: Integers, n: int) -> _Sheet:
     border, used = np.zeros(n, bool), np.zeros(n, bool)
     border[boundary_edges(T)] = True
     used[T] = True
@@ -103,7 +102,7 @@ def _sheet(T: Ints, n: int) -> _Sheet:
 
 
 def _rim_depth(
-    maps: SheetMaps, head: HeadRaster, edges: Ints, rim: Mask, joined: Mask, front: _Sheet, back: _Sheet
+    maps: SheetMaps, head: HeadRaster, edges: Integers, rim: Mask, joined: Mask, front: _Sheet, back: _Sheet
 ) -> Floats:
     """Depth (n,) of the rim, and of the hairline: on the skin where there is some, else where the crown turns."""
     n = len(rim)
@@ -119,7 +118,7 @@ def _rim_depth(
     return _smoothed(_smoothed(depth, edges, floor, ceiling), boundary_edges(front.triangles), floor, ceiling)
 
 
-def _smoothed(values: Floats, edges: Ints, floor: Floats, ceiling: Floats) -> Floats:
+def _smoothed(values: Floats, edges: Integers, floor: Floats, ceiling: Floats) -> Floats:
     """Values smoothed along lines of edges, between bounds."""
     rows = np.unique(edges)
     ends = np.searchsorted(rows, edges)
@@ -134,7 +133,7 @@ def _smoothed(values: Floats, edges: Ints, floor: Floats, ceiling: Floats) -> Fl
 
 
 def _front(
-    P: Floats, T: Ints, front: _Sheet, rasters: SheetRasters, maps: SheetMaps, joined: Mask, depth: Floats
+    P: Floats, T: Integers, front: _Sheet, rasters: SheetRasters, maps: SheetMaps, joined: Mask, depth: Floats
 ) -> Floats:
     """The larger of a ball within the whole outline, drawn to the hairline, and of hair of a thickness on the skin."""
     n, head = len(P), rasters.head

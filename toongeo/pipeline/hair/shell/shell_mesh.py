@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Integers
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
 from toongeo.pipeline.hair.shell.edges import boundary_edges, edges_of, halved
 from toongeo.pipeline.hair.shell.faired import faired
@@ -16,7 +17,6 @@ from toongeo.pipeline.hair.shell.sheets import Sheets, sheets
 __all__ = ["ShellMesh", "shell_mesh"]
 
 Floats = NDArray[np.floating]
-Ints = NDArray[np.int64]
 
 _LONGEST_MM = 10.0  # of an edge that is seen
 _MOST = 6_800  # triangles of a sheet, so that both have less than 15,000
@@ -37,7 +37,7 @@ class ShellMesh:
     """
 
     vertices: Floats
-    faces: Ints
+    faces: Integers
     front: NDArray[np.bool_]
     shown: NDArray[np.bool_]
 
@@ -67,7 +67,7 @@ def _long_edges(both: Sheets, most: int) -> NDArray[np.bool_]:
     return longest > max(bound, _LONGEST_MM)
 
 
-def _chords(T: Ints) -> NDArray[np.bool_]:
+def _chords(T: Integers) -> NDArray[np.bool_]:
     """Edges inside with both ends on the rim, which both sheets would share."""
     edges, _, count = edges_of(T)
     rim = np.zeros(T.max() + 1, bool)

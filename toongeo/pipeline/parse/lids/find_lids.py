@@ -10,6 +10,7 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.pipeline.parse.lids.lid_candidates import LidCandidates, lid_candidates, lid_contour
 from toongeo.pipeline.parse.lids.lid_features import lid_features
@@ -17,8 +18,6 @@ from toongeo.pipeline.parse.lids.lid_patch import RESOLUTION, LidPatch, lid_patc
 from toongeo.pipeline.parse.lids.refine_lids import refine_lids
 
 __all__ = ["Lids", "LidWeights", "candidate_probabilities", "find_lids", "lid_weights"]
-
-Floats = NDArray[np.float64]
 
 _DOUBT = 0.05  # outer-eye distances: a scatter of the likely contours that leaves 1/e of the confidence
 

@@ -16,6 +16,8 @@ from toongeo.pipeline.rig.eyes.separate_lids import separate_lids
 from toongeo.pipeline.rig.eyes.unfold_lids import unfold_lids
 from toongeo.pipeline.rig.rig import Rig
 
+__all__ = ["fit_lids"]
+
 
 def fit_lids(face: AlignedFace, rig: Rig, *, close: bool = True) -> tuple[Rig, Eyes]:
     """All contacts between lids and eyeballs, one step after the other.

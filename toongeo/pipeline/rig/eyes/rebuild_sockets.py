@@ -14,6 +14,8 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.rig import Rig
 
+__all__ = ["DEPTH", "rebuild_sockets"]
+
 DEPTH = 0.95  # of the eyeball's radius: where the lining ends, inside the eyeball
 
 

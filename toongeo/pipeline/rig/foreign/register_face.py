@@ -17,10 +17,19 @@ from toongeo.pipeline.align.straighten_teeth import PARTS, straighten_teeth
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.render import ScaledOrthographicCamera
 
-RIM_WEIGHT = 0.05  # of a landmark's: what lies between two of them on a rim is interpolated
+__all__ = ["RegisteredFace", "hidden", "register_face"]
+
+_RIM_WEIGHT = 0.05  # of a landmark's: what lies between two of them on a rim is interpolated
 # Parts of the template that a head may lack or have in another form, and how far behind their rims (mm) they begin: the
 # inner sides of lids and lips are looked for on the head.
-HIDDEN = {"socket_left": 3.0, "socket_right": 3.0, "mouth_cavity": 8.0, "teeth_upper": 0, "teeth_lower": 0, "tongue": 0}
+_HIDDEN = {
+    "socket_left": 3.0,
+    "socket_right": 3.0,
+    "mouth_cavity": 8.0,
+    "teeth_upper": 0,
+    "teeth_lower": 0,
+    "tongue": 0,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +101,7 @@ def register_face(V: np.ndarray, F: np.ndarray, points: np.ndarray, model: Morph
         np.r_[model.landmarks[inner], rim],
         np.vstack([points[inner], rim_points]),
         fitted=~hidden(model),
-        landmark_weight=np.r_[np.ones(inner.sum()), np.full(len(rim), RIM_WEIGHT)],
+        landmark_weight=np.r_[np.ones(inner.sum()), np.full(len(rim), _RIM_WEIGHT)],
     )
     vertices = (registration.vertices - shift) @ rotation / scale
     if all(name in model.regions for name in PARTS):
@@ -113,7 +122,7 @@ def register_face(V: np.ndarray, F: np.ndarray, points: np.ndarray, model: Morph
 def hidden(model: MorphableModel) -> np.ndarray:
     """Mask (n,) of the parts of a model that lie behind lids and lips."""
     mask = np.zeros(len(model.mean), bool)
-    for name, depth in HIDDEN.items():
+    for name, depth in _HIDDEN.items():
         if name in model.regions:
             inside = np.flatnonzero(model.regions[name])
             rim = model.mean[opening_rim(model, name)]

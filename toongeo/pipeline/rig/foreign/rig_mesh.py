@@ -19,10 +19,12 @@ from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_pa
 from toongeo.pipeline.rig.foreign.register_face import hidden, register_face
 from toongeo.pipeline.rig.rig import Rig
 
-LEAST_LANDMARKS = 12  # of the inner ones
-LIKENESS = 0.5  # of their spread: how far landmarks of a face may be from the model's, root mean square
-STILL = 1e-3  # of the largest motion: what moves less in every expression is held
-LEAST_MATCHED = 0.5  # of the face: with less the two are not the same kind of surface
+__all__ = ["rig_mesh"]
+
+_LEAST_LANDMARKS = 12  # of the inner ones
+_LIKENESS = 0.5  # of their spread: how far landmarks of a face may be from the model's, root mean square
+_STILL = 1e-3  # of the largest motion: what moves less in every expression is held
+_LEAST_MATCHED = 0.5  # of the face: with less the two are not the same kind of surface
 
 
 def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: MorphableModel | None = None) -> Rig:
@@ -86,7 +88,7 @@ def rig_mesh(V: ArrayLike, F: ArrayLike, landmarks: ArrayLike, *, model: Morphab
     skin = ~hidden(model)
     face = model.regions.get("face", skin) & skin
     matched = float(head.registration.matched[face].mean())
-    if matched < LEAST_MATCHED:
+    if matched < _LEAST_MATCHED:
         raise ValueError(
             f"V: expected a head on which the model's face fits, with triangles counter-clockwise from outside, "
             f"got one where {matched:.0%} of it finds a partner"
@@ -119,9 +121,9 @@ def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike, model: M
     matrix, given = landmark_matrix(V, F, landmarks, "landmarks")
     if len(given) != 68:
         raise ValueError(f"landmarks: expected 68 vertices or points (iBUG-68), got {len(given)}")
-    if given[INNER].sum() < LEAST_LANDMARKS:
+    if given[INNER].sum() < _LEAST_LANDMARKS:
         raise ValueError(
-            f"landmarks: expected at least {LEAST_LANDMARKS} of the points 17-67, got {given[INNER].sum()}"
+            f"landmarks: expected at least {_LEAST_LANDMARKS} of the points 17-67, got {given[INNER].sum()}"
         )
     points = np.where(given[:, None], matrix @ V, np.nan)
     inner = INNER[given[INNER]]
@@ -131,7 +133,7 @@ def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike, model: M
         raise ValueError("landmarks: expected the points of a face, got one place for all")
     scale, rotation, shift = similarity(own, found)
     misfit = np.sqrt(((found - scale * own @ rotation.T - shift) ** 2).sum(1).mean()) / spread
-    if not misfit <= LIKENESS:
+    if not misfit <= _LIKENESS:
         raise ValueError(
             f"landmarks: expected the points of a face in the order of iBUG-68, got ones that are off by "
             f"{misfit:.0%} of their spread from the model's, however it is turned"
@@ -150,7 +152,7 @@ def _transferred(face: AlignedFace) -> np.ndarray:
     model = face.model
     shapes = model.expression[: model.n_named].astype(np.float64)
     motion = np.abs(shapes).max(axis=(0, 2))
-    still = np.flatnonzero(motion <= STILL * motion.max())
+    still = np.flatnonzero(motion <= _STILL * motion.max())
     transfer = DeformationTransfer(model.mean, model.faces, face.vertices, pinned=still, weights="area")
     moved = transfer.transfer(model.mean + shapes)
     for side in ("left", "right"):

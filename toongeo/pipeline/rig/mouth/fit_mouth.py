@@ -6,6 +6,8 @@ from toongeo.pipeline.rig.mouth.hang_teeth import hang_teeth
 from toongeo.pipeline.rig.mouth.seal_lips import seal_lips
 from toongeo.pipeline.rig.rig import Rig
 
+__all__ = ["fit_mouth"]
+
 
 def fit_mouth(face: AlignedFace, rig: Rig) -> Rig:
     """Give lips, teeth and tongue the contacts that deformation transfer does not know of.

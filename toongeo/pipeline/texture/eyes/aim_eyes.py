@@ -10,9 +10,11 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig import Eyes
 from toongeo.pipeline.texture.eyes.find_irises import Iris
 
+__all__ = ["LEAST_FRONT", "aim_eyes"]
+
 LEAST_FRONT = 0.5  # cosine to the line of sight: an iris nearer to the outline of its eyeball is brought in to there
 
-UNSURE = (3.0, 6.0)  # degrees sideways, and up or down: how little the pose of a drawn head is known
+_UNSURE = (3.0, 6.0)  # degrees sideways, and up or down: how little the pose of a drawn head is known
 
 
 def aim_eyes(
@@ -20,7 +22,7 @@ def aim_eyes(
     eyes: Eyes,
     irises: tuple[Iris | None, Iris | None],
     *,
-    unsure: tuple[float, float] = UNSURE,
+    unsure: tuple[float, float] = _UNSURE,
 ) -> Eyes:
     """Keep the gaze of the picture as a pose of the eyes: each looks where its iris is seen.
 
