@@ -8,10 +8,10 @@ from multiprocessing import get_context
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
 from renders.random_head import KINDS
 from renders.render_face import drawn, random_style
 from renders.scene import random_scene
-
 from toongeo.model.ibug68 import MIRROR
 
 __all__ = ["SIZE_PX", "Samples", "mirrored", "rendered_samples"]
@@ -37,9 +37,7 @@ def rendered_samples(seed: int, heads: int, processes: int) -> Samples:
     chunks = [(seed, k, min(k + _CHUNK, heads)) for k in range(0, heads, _CHUNK)]
     with get_context("fork").Pool(processes) as pool:
         parts = pool.starmap(_chunk, chunks, chunksize=1)
-    return Samples(
-        *(np.concatenate([getattr(p, name) for p in parts]) for name in ("grey", "landmarks", "kinds", "yaw"))
-    )
+    return Samples(*(np.concatenate([getattr(p, name) for p in parts]) for name in ("grey", "landmarks", "kinds", "yaw")))
 
 
 def mirrored(grey: NDArray[np.uint8], landmarks: NDArray[np.float64]) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:

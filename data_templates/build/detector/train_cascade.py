@@ -91,9 +91,7 @@ def _axes(pictures, matrices, points, kind, rng) -> tuple[NDArray[np.float32], N
     """Means (68, d) and principal axes (68, d, c) of the descriptors."""
     radius, blurs = kind
     chosen = rng.choice(len(points), min(_PCA_SAMPLES, len(points)), replace=False)
-    found = np.array(
-        [point_descriptors(face_crop(_picture(pictures, k), matrices[k]), points[k], radius, blurs) for k in chosen]
-    )
+    found = np.array([point_descriptors(face_crop(_picture(pictures, k), matrices[k]), points[k], radius, blurs) for k in chosen])
     mean, axes = np.empty((68, SAMPLES * 8)), np.empty((68, SAMPLES * 8, _AXES))
     for j in range(68):
         mean[j] = found[:, j].mean(axis=0)

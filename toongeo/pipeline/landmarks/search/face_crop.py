@@ -58,7 +58,5 @@ def whole_descriptor(crop: NDArray[np.uint8]) -> NDArray[np.float32]:
 
 
 def _normalised(histograms: NDArray[np.float32], window: int) -> NDArray[np.float32]:
-    energy = cv2.blur(
-        np.einsum("yxk,yxk->yx", histograms, histograms), (window, window), borderType=cv2.BORDER_REPLICATE
-    )
+    energy = cv2.blur(np.einsum("yxk,yxk->yx", histograms, histograms), (window, window), borderType=cv2.BORDER_REPLICATE)
     return np.minimum(np.sqrt(histograms / (np.sqrt(np.maximum(energy, 0)) + _WHOLE_FLOOR)[..., None]), 1.5)
