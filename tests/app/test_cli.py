@@ -1,3 +1,4 @@
+import importlib
 import subprocess
 import sys
 
@@ -41,6 +42,23 @@ def test_make_writes_a_vrm_with_its_author_and_a_small_glb(tmp_path, capsys):
     document = read_glb(tmp_path / "a.glb").json
     assert len(document["meshes"][0]["extras"]["targetNames"]) == 52 and "images" not in document
     assert document["extensionsUsed"] == ["KHR_mesh_quantization"]
+
+
+def test_make_takes_a_hair_mask_or_no_hair(tmp_path, capsys, monkeypatch):
+    module = importlib.import_module("toongeo.app.make")
+    asked = []
+
+    def stop(*_, **options):
+        asked.append((options["hair"], options["hair_mask"]))
+        raise ValueError("enough")
+
+    monkeypatch.setattr(module, "make_avatar", stop)
+    command = ["make", str(PICTURE), "--landmarks", str(POINTS), "-o", str(tmp_path / "a.glb")]
+    mask = tmp_path / "mask.png"
+    mask.write_bytes(PICTURE.read_bytes())
+    for more in ([], ["--no-hair"], ["--hair-mask", str(mask)]):
+        assert main([*command, *more]) == 2
+    assert asked == [(True, None), (False, None), (True, mask)]
 
 
 def test_an_option_that_the_format_has_not_is_refused_before_the_work(tmp_path, capsys, monkeypatch):

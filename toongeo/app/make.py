@@ -43,7 +43,7 @@ def make(
     """
     saving = {"crop": crop, **(options or {})}
     writer_for(output, format, saving)
-    check_output(output, {"image": image, "landmarks": landmarks}, format)
+    check_output(output, {"image": image, "landmarks": landmarks, "hair_mask": hair_mask}, format)
     img, points = read_image(image), read_landmarks(landmarks)
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
