@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
 
 from toongeo.arrays import Integers
 from toongeo.pipeline.hair.colours.panels import Texels, panels, texels
@@ -11,6 +10,7 @@ from toongeo.pipeline.hair.colours.strand_frame import StrandFrame
 from toongeo.pipeline.hair.plane.masks import nearest_set
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
 from toongeo.pipeline.hair.shell.shell_mesh import ShellMesh
+from toongeo.render import sample_image
 
 __all__ = ["hair_texture"]
 
@@ -59,11 +59,12 @@ def _colours(
     strands: NDArray[np.float32],
 ) -> NDArray[np.float32]:
     """Colours (k, 3) of texels."""
-    at = ((inside.points[:, :2] - plane.low) / colours.cell_mm).T[::-1]
-    drawn, broad, plain = (_sampled(layer, at) for layer in (colours.drawn, colours.broad, colours.plain))
+    at = (inside.points[:, :2] - plane.low) / colours.cell_mm
+    drawn, broad, plain = (sample_image(layer, at) for layer in (colours.drawn, colours.broad, colours.plain))
     across, along = frame.at(plane.back(inside.points))
     per_mm = strands.shape[1] / frame.breadth
-    detail = _sampled(strands, np.array([along, across]) * per_mm, reflect=True)
+    rows = np.abs(np.mod(along * per_mm + len(strands), 2 * len(strands)) - len(strands))  # there and back again
+    detail = sample_image(strands, np.column_stack([across * per_mm, rows]))
     seen = (mesh.front & mesh.shown)[inside.triangle] | ~mesh.shown[inside.triangle]
     behind = _ramp(-inside.normals[:, 2], *_BEHIND)
     share = _ramp(inside.normals[:, 2], *_TURNED) * seen[:, None]
@@ -74,9 +75,3 @@ def _ramp(values: Floats, low: float, high: float) -> NDArray[np.float32]:
     """0 (k, 1) below, 1 above, smooth in between."""
     t = np.clip((values - low) / (high - low), 0, 1)
     return np.asarray(t * t * (3 - 2 * t), np.float32)[:, None]
-
-
-def _sampled(layer: NDArray[np.float32], at: Floats, *, reflect: bool = False) -> NDArray[np.float32]:
-    mode = "mirror" if reflect else "nearest"
-    channels = [map_coordinates(layer[..., k], at, order=1, mode=mode) for k in range(layer.shape[2])]
-    return np.stack(channels, axis=1)

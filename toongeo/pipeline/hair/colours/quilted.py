@@ -6,9 +6,9 @@ from numpy.typing import NDArray
 __all__ = ["quilted"]
 
 Floats = NDArray[np.floating]
-# A patch is taken whose error is above the best one's by at most so much of that, and of the median: with less, the
+# A patch is taken whose error is above the best one's by at most so much of that, and of the mean one: with less, the
 # plainest patch beside itself always fits best.
-_TOLERANCE, _SPREAD = 0.2, 0.1
+_TOLERANCE, _SPREAD = 0.2, 0.07
 
 
 def quilted(
@@ -40,15 +40,17 @@ def quilted(
     side, step = patches.shape[1], patches.shape[1] - overlap
     rows, columns = (-(-(n - overlap) // step) for n in shape)
     texture = np.zeros((rows * step + overlap, columns * step + overlap, patches.shape[3]), np.float32)
+    parts = (part.reshape(len(patches), -1) for part in (patches[:, :overlap], patches[:, :, :overlap]))
+    upper, left = ((part, np.einsum("km,km->k", part, part)) for part in parts)
     for i in range(rows):
         for j in range(columns):
             place = texture[i * step : i * step + side, j * step : j * step + side]
-            errors = np.zeros(len(patches))
+            errors = np.zeros(len(patches), np.float32)
             if i:
-                errors += ((patches[:, :overlap] - place[:overlap]) ** 2).sum((1, 2, 3))
+                errors += _distances(*upper, place[:overlap])
             if j:
-                errors += ((patches[:, :, :overlap] - place[:, :overlap]) ** 2).sum((1, 2, 3))
-            bound = errors.min() + _TOLERANCE * errors.min() + _SPREAD * np.median(errors)
+                errors += _distances(*left, place[:, :overlap])
+            bound = errors.min() + _TOLERANCE * errors.min() + _SPREAD * errors.mean()
             chosen = patches[rng.choice(np.flatnonzero(errors <= bound))]
             kept = np.zeros((side, side), bool)  # of what is there already
             if i:
@@ -59,6 +61,14 @@ def quilted(
                 kept[:, :overlap] |= np.arange(overlap) < _cut(difference)[:, None]
             place[~kept] = chosen[~kept]
     return texture[: shape[0], : shape[1]]
+
+
+def _distances(
+    rows: NDArray[np.float32], squares: NDArray[np.float32], place: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """Squared distances (k,) of rows (k, m), whose squared lengths are given, to a place of m numbers."""
+    goal = place.ravel()
+    return np.asarray(np.maximum(squares - 2 * (rows @ goal) + goal @ goal, 0), np.float32)
 
 
 def _cut(difference: Floats) -> NDArray[np.int64]:

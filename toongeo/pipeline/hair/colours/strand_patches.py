@@ -11,7 +11,7 @@ __all__ = ["strand_patches"]
 
 Floats = NDArray[np.floating]
 _MOST = 60  # patches: more look no more varied
-_SIDE_MM = (10.0, 28.0)  # of a patch: a lock of hair, as far as the hair is broad enough
+_SIDE_MM = (10.0, 36.0)  # of a patch: a lock of hair, as far as the hair is broad enough
 _FLOW_MM = 8.0  # over which the direction of strands is smoothed
 _OUTSTANDING = 2.0  # times the usual contrast
 _STEADY = 0.15  # coherence below which a patch is taken as it stands
