@@ -61,7 +61,7 @@ class HeadRaster:
 
     @property
     def aired(self) -> Mask:
-        return np.isfinite(self.front_off)
+        return np.isfinite(self.front_off) | np.isfinite(self.back_off)
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,7 @@ _WIDE_MM = 5.0  # ball that rolls over the skin where the hairline runs: it brid
 _RAISED_MM = 2.0  # of that ball's surface, after it was lowered again
 _UNDER_MM = 2.0  # below the skin a surface does not show
 _THICK_MM = (3.0, 14.0)  # of hair on the scalp
+_FAR_MM = 1e4
 _FALL = 8.0  # slope with which the head falls off beside its silhouette
 
 
@@ -74,10 +75,10 @@ class SheetRasters:
         low = grey_erosion(np.where(head.head, head.front, np.inf), size=(5, 5))
         return {
             "on_skin": nearest_set(rolled, np.isfinite(rolled)),
-            "behind_skin": nearest_set(head.back_off, head.aired),
+            "behind_skin": nearest_set(head.back_off, np.isfinite(head.back_off)),
             "under": nearest_set(low, np.isfinite(low) & head.head) - _UNDER_MM,
             "front_floor": _falling(self._front_off, self._aired, -1),
-            "back_floor": _falling(head.back_off, head.aired, 1),
+            "back_floor": _falling(head.back_off, np.isfinite(head.back_off), 1),
         }
 
     @cached_property
@@ -96,5 +97,7 @@ class SheetRasters:
 
 
 def _falling(depth: Floats, known: Mask, side: int) -> Floats:
-    """A depth map that falls off steeply beside the head."""
+    """A depth map that falls off steeply beside the head; far away where there is none."""
+    if not known.any():
+        return np.full(depth.shape, side * _FAR_MM)
     return np.asarray(nearest_set(depth, known) + side * _FALL * np.maximum(-signed(known), 0))
