@@ -65,7 +65,7 @@ def _colours(
     per_mm = strands.shape[1] / frame.breadth
     rows = np.abs(np.mod(along * per_mm + len(strands), 2 * len(strands)) - len(strands))  # there and back again
     detail = sample_image(strands, np.column_stack([across * per_mm, rows]))
-    seen = (mesh.front & mesh.shown)[inside.triangle] | ~mesh.shown[inside.triangle]
+    seen = (mesh.front & mesh.shown)[inside.triangle]
     behind = _ramp(-inside.normals[:, 2], *_BEHIND)
     share = _ramp(inside.normals[:, 2], *_TURNED) * seen[:, None]
     return np.asarray(share * drawn + (1 - share) * (broad + behind * (plain - broad) + detail), np.float32)
