@@ -89,10 +89,10 @@ def cartoon():
 
 @pytest.fixture(scope="session")
 def avatar(cartoon):
-    """The avatar of one bundled picture, built once."""
+    """The avatar of one bundled picture, built once, with hair painted on its head."""
     from toongeo import make_avatar
 
-    return make_avatar(*cartoon("moustache_man"))
+    return make_avatar(*cartoon("moustache_man"), hair=False)
 
 
 @pytest.fixture(scope="session")
