@@ -71,11 +71,15 @@ def outer_faces(avatar: Avatar) -> np.ndarray:
 
 def through(avatar: Avatar, hair: Hair) -> float:
     """Worst share of the hair's pixels, %, where skin comes through."""
-    centre, F, worst = hair.vertices.mean(0), outer_faces(avatar), 0.0
+    centre, worst = hair.vertices.mean(0), 0.0
+    parts = avatar.surfaces()[:3]  # head and eyeballs
+    offsets = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    V = np.vstack([part.vertices for part in parts])
+    F = np.vstack([part.faces + offset for part, offset in zip(parts, offsets, strict=False)])
     for yaw in range(0, 360, 360 // VIEWS):
         camera = ScaledOrthographicCamera.look(yaw, 0, size=SIDE, centre=centre, extent=400)
         fragments, front = drawn(camera, hair.vertices, hair.faces, (SIDE, SIDE))
-        skin = drawn(camera, avatar.rig.neutral, F, (SIDE, SIDE))[1]
+        skin = drawn(camera, V, F, (SIDE, SIDE))[1]
         bare = fragments.mask & (skin > front)
         shown = fragments.mask & ~bare
         # Where hair ends it goes into the head, and skin lies before it, ever farther.
