@@ -8,7 +8,7 @@ import pytest
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.hair.colour_evidence import colour_evidence
 from toongeo.pipeline.parse.hair.hair_alpha import hair_alpha
-from toongeo.pipeline.parse.hair.hair_trust import HairMeasures, distrust
+from toongeo.pipeline.parse.hair.hair_trust import HairMeasures, distrust, hair_measures
 from toongeo.pipeline.parse.hair.superpixels import superpixels
 
 GOOD = HairMeasures(area=0.4, agreement=0.95, inside=0.95, outside=0.05, topped=1.0, border=0.0, hat=0.0)
@@ -55,6 +55,29 @@ def test_the_way_is_that_of_the_smoothest_path():
     way = patches.way(patches.mean(np.broadcast_to(np.arange(60) < 6, (60, 60))) > 0.5)[patches.labels]
     assert way[5, 55] < 30 < 60 < way[5, 30]
     assert (patches.way(np.zeros(len(patches.area), bool)) == 200).all()
+
+
+def test_measures_of_a_crown_that_is_known(zones, cap):
+    """Two masks of which one is the upper half of the other; posterior 0.8 inside, 0.1 outside, a quarter of it hat."""
+    posterior = np.where(cap, 0.8, 0.1).astype(np.float32)
+    half = cap.copy()
+    half[:45] = False
+    found = hair_measures(cap, half, zones, posterior, posterior / 4)
+    assert found.area == pytest.approx(cap.sum() / zones.head**2)
+    assert found.agreement == pytest.approx(half.sum() / cap.sum())
+    assert (found.inside, found.outside, found.hat) == pytest.approx((0.8, 0.1, 0.25), abs=1e-5)
+    assert found.topped == 1 and found.border == 0
+    low = cap & (zones.up < 0.5)
+    assert hair_measures(low, low, zones, posterior, posterior).topped > 0.9
+    side = cap & (zones.across < 0)
+    assert 0.4 < hair_measures(side, side, zones, posterior, posterior).topped < 0.6
+
+
+def test_measures_of_nothing(zones):
+    nothing = np.zeros(zones.skull.shape, bool)
+    field = np.full(nothing.shape, 0.2, np.float32)
+    found = hair_measures(nothing, nothing, zones, field, field)
+    assert found.area == 0 and found.topped == 0 and distrust(found)
 
 
 def test_good_measures_are_trusted_and_each_bad_one_is_named():

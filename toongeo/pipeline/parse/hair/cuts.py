@@ -16,12 +16,13 @@ __all__ = ["colour_cut", "grab_cut"]
 
 Field = NDArray[np.float32]
 
-_PLACE, _COLOUR = 0.7, 0.6  # weights of the posterior's log-odds and of the colours' evidence
+_PLACE, _COLOUR = 1.0, 0.6  # weights of the posterior's log-odds and of the colours' evidence
 _CLIP = 0.02  # posteriors are believed up to here
-_EVIDENCE = 4.0  # the most that a colour may say
+_EVIDENCE = 2.5  # the most that a colour may say
 _SMOOTHNESS = 6.0
-_SURE = 3.2  # log-odds; about the largest that the posterior alone gives is 2.7
+_SURE = 4.3  # log-odds; the posterior alone gives 3.9 at most
 _NEVER = -6.0
+_LIKELY = 0.6  # posterior of hair from which a flood of the ground is not believed
 _FEWEST = 30  # px that either side of GrabCut needs
 _PASSES = 3
 _ROOM = 0.15  # head sizes about the likely hair that GrabCut looks at
@@ -29,16 +30,15 @@ _COARSE = 2  # the first two cuts are of a picture reduced by this: ten times fa
 _BAND = 0.03  # head sizes about the coarse outline in which the last cut looks for the fine one
 
 
-def colour_cut(lab: Field, zones: HeadZones, posterior: Field, never: Mask | None) -> Mask:
+def colour_cut(lab: Field, zones: HeadZones, posterior: Field, ground: Mask | None) -> Mask:
     """Hair or hat (h, w) bool: cuts whose colours are learned from the cut before, and whose odds keep the posterior.
 
-    ``never`` are pixels that are ground for sure.
+    ``ground`` are pixels that a flood has reached; it leaks into dark hair on dark ground, so a high posterior wins.
     """
     clipped = np.clip(posterior, _CLIP, 1 - _CLIP)
     place = np.log(clipped / (1 - clipped)) * _PLACE
     barred = zones.core & (posterior < 0.3)
-    if never is not None:
-        barred |= never
+    barred |= _ground(ground, posterior)
     smooth = np.asarray(cv2.bilateralFilter(lab, 5, 8, 2), np.float32)
     near = np.where(grown(posterior > 0.3, 0.3 * zones.head), 1, 0.3).astype(np.float32)
     small = smooth.shape[1] // _COARSE, smooth.shape[0] // _COARSE
@@ -60,13 +60,12 @@ def colour_cut(lab: Field, zones: HeadZones, posterior: Field, never: Mask | Non
     return cut
 
 
-def grab_cut(view: WorkingView, zones: HeadZones, posterior: Field, never: Mask | None) -> Mask:
+def grab_cut(view: WorkingView, zones: HeadZones, posterior: Field, ground: Mask | None) -> Mask:
     """Hair or hat (h, w) bool by GrabCut (Rother et al. 2004), whose seeds are where the posterior is sure."""
     mask = np.where(posterior > 0.5, cv2.GC_PR_FGD, cv2.GC_PR_BGD).astype(np.uint8)
     mask[grown(posterior > 0.9, -0.02 * zones.head)] = cv2.GC_FGD
     mask[(posterior < 0.05) | (zones.core & (posterior < 0.3))] = cv2.GC_BGD
-    if never is not None:
-        mask[never] = cv2.GC_BGD
+    mask[_ground(ground, posterior)] = cv2.GC_BGD
     front = (mask == cv2.GC_FGD) | (mask == cv2.GC_PR_FGD)
     if min(front.sum(), (~front).sum()) < _FEWEST:
         return front
@@ -79,6 +78,10 @@ def grab_cut(view: WorkingView, zones: HeadZones, posterior: Field, never: Mask 
     result = np.zeros_like(front)
     result[rows, columns] = (part == cv2.GC_FGD) | (part == cv2.GC_PR_FGD)
     return result
+
+
+def _ground(ground: Mask | None, posterior: Field) -> Mask:
+    return np.zeros(posterior.shape, bool) if ground is None else ground & (posterior < _LIKELY)
 
 
 def _extent(line: Mask) -> slice:

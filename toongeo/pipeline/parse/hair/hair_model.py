@@ -15,11 +15,9 @@ from toongeo.pipeline.parse.hair.context import context
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
 from toongeo.pipeline.parse.hair.superpixels import Superpixels
 
-__all__ = ["CLASSES", "HairModel", "hair_model"]
+__all__ = ["HairModel", "hair_model"]
 
 Field = NDArray[np.float32]
-
-CLASSES = ("other", "hair", "hat")
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +27,12 @@ class HairModel:
     first: BoostedTrees
     second: BoostedTrees
 
-    def __call__(self, zones: HeadZones, patches: Superpixels) -> Field:
-        """Probabilities (k, 3) of other, hair and hat for each superpixel."""
+    def __call__(self, zones: HeadZones, patches: Superpixels) -> tuple[Field, Field]:
+        """The guess and the answer: probabilities (k, 3) of other, hair and hat for each superpixel."""
         numbers = np.column_stack(list(appearance(zones, patches).values()))
         guess = self.first(numbers)
         around = np.column_stack(list(context(zones, patches, guess).values()))
-        return self.second(np.column_stack([numbers, around]))
+        return guess, self.second(np.column_stack([numbers, around]))
 
 
 @cache

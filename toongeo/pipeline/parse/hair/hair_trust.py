@@ -26,11 +26,11 @@ class HairMeasures:
     ----------
     area : of the mask, in squares of the head's size
     agreement : intersection over union of two masks that were cut in different ways
-    inside : mean posterior in the mask
-    outside : mean posterior in a ring about it
+    inside : mean posterior in the mask, of both sets of trees
+    outside : the same in a ring about it
     topped : share of the columns over the crown that hair tops
     border : share of the outline that is the picture's border
-    hat : share of hair and hat that is hat
+    hat : how much of what is likely hair or hat in the mask is rather hat
     """
 
     area: float
@@ -42,8 +42,8 @@ class HairMeasures:
     hat: float
 
 
-def hair_measures(mask: Mask, other: Mask, hat: Mask, zones: HeadZones, posterior: Field) -> HairMeasures:
-    """Measures of a mask of hair and hat (h, w), of another mask of the same, and of the hat in the first."""
+def hair_measures(mask: Mask, other: Mask, zones: HeadZones, posterior: Field, hat: Field) -> HairMeasures:
+    """Measures of a mask of hair and hat (h, w), and of another one; posteriors (h, w) of both, and of hats alone."""
     union = int((mask | other).sum())
     ring = grown(mask, 0.06 * zones.head) & ~grown(mask, 0.015 * zones.head)
     columns = np.flatnonzero((zones.skull & (zones.up > 0.25)).any(axis=0))
@@ -59,7 +59,7 @@ def hair_measures(mask: Mask, other: Mask, hat: Mask, zones: HeadZones, posterio
         outside=float(posterior[ring].mean()) if ring.any() else 0.0,
         topped=float(top.mean()) if len(top) else 0.0,
         border=cut / max(1, outline),
-        hat=float(hat.sum()) / max(1, int(mask.sum())),
+        hat=float(hat[mask].sum()) / max(float(posterior[mask].sum()), 1e-6),
     )
 
 

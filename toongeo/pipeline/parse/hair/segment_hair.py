@@ -43,15 +43,20 @@ def segment_hair(view: WorkingView, zones: HeadZones, model: HairModel) -> Segme
     """Posterior, two cuts of it, rules of growth, and what the cuts say of each other."""
     lab = cielab(view.pixels)
     patches = superpixels(lab)
-    chances = model(zones, patches)
-    either = (chances[:, 1] + chances[:, 2])[patches.labels]
-    cover = np.asarray(cv2.GaussianBlur(either, (0, 0), _BLUR), np.float32)
+    guess, chances = (p[patches.labels] for p in model(zones, patches))
+    cover = _cover(chances)
     ground = plain_ground(view, zones)
     both = growth_rules(colour_cut(lab, zones, cover, ground), zones, cover)
     other = growth_rules(grab_cut(view, zones, cover, ground), zones, cover)
-    hat = _hat(both, chances[patches.labels], zones)
+    hat = _hat(both, chances, zones)
     alpha = hair_alpha(view.pixels, both & ~hat, zones.head)
-    return SegmentedHair(both & ~hat, hat, alpha, hair_measures(both, other, hat, zones, cover))
+    measures = hair_measures(both, other, zones, (cover + _cover(guess)) / 2, (chances[..., 2] + guess[..., 2]) / 2)
+    return SegmentedHair(both & ~hat, hat, alpha, measures)
+
+
+def _cover(chances: Field) -> Field:
+    """How likely each pixel (h, w) is hair or hat."""
+    return np.asarray(cv2.GaussianBlur(chances[..., 1] + chances[..., 2], (0, 0), _BLUR), np.float32)
 
 
 def _hat(mask: Mask, chances: Field, zones: HeadZones) -> Mask:
