@@ -1,3 +1,5 @@
+import dataclasses
+
 import numpy as np
 
 from toongeo.pipeline import build_hair, hair_faults, make_room
@@ -48,6 +50,12 @@ def test_faults_of_masks(avatar, picture, mask):
     ):
         (found,) = hair_faults(avatar.face, bad)
         assert reason in found, found
+
+
+def test_a_model_without_a_scalp(avatar, mask):
+    regions = {name: rows for name, rows in avatar.face.model.regions.items() if name != "scalp"}
+    plain = dataclasses.replace(avatar.face, model=dataclasses.replace(avatar.face.model, regions=regions))
+    assert hair_faults(plain, mask) == ("the model has no region scalp",)
 
 
 def test_two_blobs_are_the_one_on_the_head(avatar, picture, mask):

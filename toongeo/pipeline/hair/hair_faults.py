@@ -12,6 +12,7 @@ from toongeo.pipeline.hair.plane.working_plane import WorkingPlane, working_plan
 
 __all__ = ["hair_faults"]
 
+_REGIONS = ("scalp", "ears", "ear_left", "ear_right", "skin", "neck", "lips", "face")  # that hair needs to know of
 _TOPPED = 0.5  # of the columns over the crown that hair tops: with less the head is bald, or the mask wrong
 _INNER = np.r_[27:68]  # nose, eyes and mouth
 _OVER_FACE = 0.3  # of these landmarks may lie under hair
@@ -27,6 +28,9 @@ def hair_faults(face: AlignedFace, mask: Mask) -> tuple[str, ...]:
     mask : (H, W) bool
         Pixels of hair in the picture.
     """
+    missing = [name for name in _REGIONS if name not in face.model.regions]
+    if missing:
+        return (f"the model has no region {', '.join(missing)}",)
     if not mask.any():
         return ("the mask shows no hair",)
     px = np.rint(face.project(face.vertices[face.landmark_vertices[_INNER]])).astype(int)

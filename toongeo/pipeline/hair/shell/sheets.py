@@ -23,10 +23,7 @@ _SLOPE = 0.5  # by which hair gets thicker away from its line on the skin
 _RISE = 1.5  # slope, at most, of hair away from where it comes from behind the head
 _FULL = (0.5, 1.2)  # of the back against a sphere
 _SHEET_MM = (0.8, 6.0)  # thickness of hair where only one side of it is seen: at the edge, and away from it
-_FOLD_MM, _FOLD_WITHIN_MM = (
-    4.5,
-    2.6,
-)  # so steeply the edge of a fringe goes under the skin, that it covers no more of it
+_FOLD_MM, _FOLD_WITHIN_MM = 4.5, 2.6  # fall of the edge of a fringe: steep, or it would cover more of the skin
 _ROUNDS = 30  # passes that smooth the depth of the rim
 
 
