@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.sharing import Once
+
 ROOT = Path(__file__).parents[1]
 WEB = ROOT / "tests" / "web"
 PORTRAITS = ROOT / "examples" / "portraits"
@@ -41,6 +43,45 @@ def model():
 
 
 @pytest.fixture(scope="session")
+def artist():
+    """The template without a prior of people: its mean is the likeliest face, so exact landmarks give it back."""
+    from toongeo.model.artist_model import artist_model
+
+    return artist_model()
+
+
+@pytest.fixture(scope="session")
+def random_face(model):
+    """Function ``seed -> (identity, expression)`` of a plausible face within the bounds."""
+
+    def draw(seed):
+        rng = np.random.default_rng(seed)
+        expression = np.zeros(len(model.expression))
+        chosen = rng.choice(model.n_named, 4, replace=False)
+        expression[chosen] = rng.uniform(0.1, 0.6, 4)
+        expression[model.expression_index("mouthClose")] = 0
+        return 0.5 * rng.standard_normal(len(model.identity)), expression
+
+    return draw
+
+
+@pytest.fixture(scope="session")
+def annotated():
+    """Function ``(model, camera, identity, expression) -> (68, 2) px``, jaw points on the outline."""
+    from toongeo.model.anatomy.landmark_basis import landmark_basis
+    from toongeo.model.anatomy.visible_landmarks import visible_landmarks
+
+    def project(model, camera, identity=None, expression=None):
+        identity = np.zeros(len(model.identity)) if identity is None else identity
+        expression = np.zeros(len(model.expression)) if expression is None else expression
+        coefficients = np.concatenate([identity, expression])
+        vertices = visible_landmarks(landmark_basis(model), coefficients, camera.rotation)
+        return camera.project(model.vertices(identity, expression)[vertices])
+
+    return project
+
+
+@pytest.fixture(scope="session")
 def cartoon():
     """``cartoon(name)`` -> picture and landmarks of a bundled example."""
     from toongeo.io import read_image, read_landmarks
@@ -49,11 +90,48 @@ def cartoon():
 
 
 @pytest.fixture(scope="session")
-def avatar(cartoon):
-    """The avatar of one bundled picture, built once."""
+def once(tmp_path_factory):
+    """``once(key, make)`` -> what ``make()`` gives, made once for a run, also if it has several processes."""
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    return Once(None if alone else tmp_path_factory.getbasetemp().parent)
+
+
+@pytest.fixture(scope="session")
+def avatars(once, cartoon):
+    """``avatars(name)`` -> `make_avatar` of a bundled picture."""
     from toongeo import make_avatar
 
-    return make_avatar(*cartoon("moustache_man"))
+    return lambda name: once(f"avatar-{name}", lambda: make_avatar(*cartoon(name)))
+
+
+@pytest.fixture(scope="session")
+def avatar(avatars):
+    """The avatar of one bundled picture."""
+    return avatars("moustache_man")
+
+
+@pytest.fixture(scope="session")
+def fits(once, cartoon):
+    """``fits(name)`` -> `fit_3dmm` of a bundled picture."""
+    from toongeo import fit_3dmm
+
+    return lambda name: once(f"fit-{name}", lambda: fit_3dmm(*cartoon(name)))
+
+
+@pytest.fixture(scope="session")
+def aligned(once, cartoon, fits):
+    """``aligned(name)`` -> `align_face` of its fit, as drawn: no expression is taken out of it."""
+    from toongeo import align_face
+
+    return lambda name: once(f"aligned-{name}", lambda: align_face(fits(name), cartoon(name)[1]))
+
+
+@pytest.fixture(scope="session")
+def transferred(once, aligned):
+    """``transferred(name)`` -> `build_rig` of its aligned face, before lids and mouth are fitted."""
+    from toongeo import build_rig
+
+    return lambda name: once(f"rig-{name}", lambda: build_rig(aligned(name)))
 
 
 @pytest.fixture(scope="session")

@@ -34,7 +34,8 @@ def test_every_public_name_exists_and_is_documented():
 
 
 def test_a_verb_wins_over_the_module_of_its_name():
-    code = "import toongeo.make_avatar, toongeo.avatar, toongeo as t; print(callable(t.make_avatar), t.Avatar.__name__)"
+    code = "import toongeo.geometry.laplacian_align, toongeo.avatar.avatar, toongeo as t; "
+    code += "print(callable(t.geometry.laplacian_align), t.Avatar.__name__)"
     assert run(sys.executable, "-c", code, cwd=ROOT).split() == ["True", "Avatar"]
 
 
@@ -51,6 +52,8 @@ def test_a_wheel_carries_its_data(pip, tmp_path):
         archive.extractall(tmp_path / "site")
         names = archive.namelist()
     assert {"toongeo/io/landmark_layout.csv", "toongeo/io/humanoid_bones.csv"} < set(names)
+    tables = [path.name for kind in ("csv", "npz", "md") for path in (ROOT / "data_templates").glob(f"*.{kind}")]
+    assert {f"toongeo/data_templates/{name}" for name in tables} <= set(names)
     assert {f"toongeo/io/page/{name}" for name in ("viewer.js", "page.html", "page.css")} < set(names)
     assert not [name for name in names if "node_modules" in name]
     assert not [name for name in names if "/build/" in name or name.startswith("tests")]

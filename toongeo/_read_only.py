@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+__all__ = ["read_only"]
+
 
 def read_only(instance: object, *names: str) -> None:
     """Replace array fields of a frozen dataclass by views that cannot be written to; the given arrays stay writable.

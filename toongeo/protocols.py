@@ -9,6 +9,21 @@ from typing import Any, Protocol
 
 import numpy as np
 
+__all__ = [
+    "Camera",
+    "Coefficients",
+    "ExpressionDriver",
+    "FaceLabel",
+    "FaceParse",
+    "FaceParser",
+    "FittedFace",
+    "HeadCamera",
+    "LandmarkMapper",
+    "Regressor",
+    "TextureGenerator",
+    "TextureGeometry",
+]
+
 
 class Camera(Protocol):
     """A map from the model frame (mm) to the image frame (pixels; x right, y down; integer = pixel centre)."""
@@ -317,7 +332,10 @@ class TextureGeometry:
 
 
 class TextureGenerator(Protocol):
-    """What an expression does to the colours of a face (Chen et al. 2020, section 3.3); a network, say."""
+    """What an expression does to the colours of a face (Chen et al. 2020, section 3.3); a network, say.
+
+    It need not know where lids close and lips part, nor draw lashes: :class:`toongeo.ExpressionEditor` does.
+    """
 
     def __call__(
         self, texture: np.ndarray, source: np.ndarray, target: np.ndarray, geometry: TextureGeometry

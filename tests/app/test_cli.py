@@ -57,7 +57,7 @@ def test_an_option_that_the_format_has_not_is_refused_before_the_work(tmp_path, 
 def test_demo_writes_its_four_kinds_of_file(tmp_path, capsys):
     assert main(["demo", "-o", str(tmp_path / "demo")]) == 0
     names = {path.name for path in (tmp_path / "demo").iterdir()}
-    assert names == {"avatar.glb", "avatar.obj", "avatar.mtl", "avatar.png", "contact-sheet.png"}
+    assert names == {"avatar.glb", "avatar.obj", "avatar.mtl", "avatar_texture.png", "contact-sheet.png"}
     printed = capsys.readouterr().out
     assert all(name in printed for name in names)
 
@@ -110,3 +110,20 @@ def test_the_module_runs_as_a_program():
         cwd=PORTRAITS.parents[1],
     )
     assert done.stdout.startswith("toongeo ")
+
+
+def test_make_takes_landmarks_of_another_scheme(tmp_path, capsys, monkeypatch):
+    import numpy as np
+
+    from toongeo.io import read_landmarks
+
+    points = tmp_path / "inner.npy"
+    np.save(points, read_landmarks(POINTS)[17:])
+    given = {}
+    monkeypatch.setattr("toongeo.app.make.make_avatar", lambda img, points, **options: given.update(options, at=points))
+    arguments = ["make", str(PICTURE), "--landmarks", str(points), "-o", str(tmp_path / "a.ply")]
+    assert main(arguments) == 2
+    assert "expected 68 points in iBUG order, got 51" in capsys.readouterr().err
+    with pytest.raises(AttributeError):  # of the stand-in, which gives no avatar to save
+        main([*arguments, "--scheme", "ibug51"])
+    assert given["scheme"] == "ibug51" and given["at"].shape == (51, 2)

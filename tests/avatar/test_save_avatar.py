@@ -202,7 +202,7 @@ def test_the_licence_of_a_vrm_is_the_users(avatar, tmp_path):
 def test_a_sequence_of_obj_is_every_expression(avatar, tmp_path):
     avatar.save(tmp_path / "faces", format="obj-sequence")
     files = sorted(path.name for path in (tmp_path / "faces").iterdir())
-    assert files[0] == "000_neutral.obj" and files[-2:] == ["face.mtl", "face.png"] and len(files) == 55 + 2
+    assert files[0] == "000_neutral.obj" and files[-2:] == ["face.mtl", "face_texture.png"] and len(files) == 55 + 2
     neutral = read_obj(tmp_path / "faces" / "000_neutral.obj")
     for name in ("jawOpen", "eyeLookUpLeft"):
         (found,) = (tmp_path / "faces").glob(f"*_{name}.obj")

@@ -1,7 +1,17 @@
+import cv2
 import numpy as np
 import pytest
 
 from toongeo.render import Fragments, interpolate, rasterize, uv_to_px
+
+
+@pytest.fixture(params=["OpenCV", "z-buffer"], autouse=True)
+def way(request, monkeypatch):
+    """Every test holds with OpenCV's rasterizer and without it."""
+    if request.param == "z-buffer":
+        monkeypatch.delattr(cv2, "triangleRasterizeColor", raising=False)
+    elif not hasattr(cv2, "triangleRasterizeColor"):
+        pytest.skip("this OpenCV has no rasterizer")
 
 
 def slow_reference(points, F, height, width, cull_back=False):

@@ -15,10 +15,12 @@ from toongeo.app.glb_page import glb_page, read_avatar_glb, target_names
 from toongeo.app.read_message import read_message
 from toongeo.driving.websockets_adapter import load_websockets
 
+__all__ = ["AvatarServer", "HOST", "LARGEST", "PAGE", "acknowledged"]
+
 HOST = "127.0.0.1"  # loopback, and nothing else: a face is nobody else's business
 LARGEST = 16_384  # bytes of a message; 54 weights with their names take 2,000
-PATIENCE = 1.0  # s that a page has to say goodbye when the server ends
-PAGE, SOURCE = "/page", "/source"
+_PATIENCE = 1.0  # s that a page has to say goodbye when the server ends
+PAGE, _SOURCE = "/page", "/source"
 
 
 class AvatarServer:
@@ -62,7 +64,7 @@ class AvatarServer:
     @property
     def source_url(self) -> str:
         """Where :func:`toongeo.driving.send_weights` sends to."""
-        return f"ws://{HOST}:{self.port}{SOURCE}?token={self.token}"
+        return f"ws://{HOST}:{self.port}{_SOURCE}?token={self.token}"
 
     async def __aenter__(self) -> AvatarServer:
         websockets = load_websockets()
@@ -73,7 +75,7 @@ class AvatarServer:
             self.port,
             process_request=self._answer,
             max_size=LARGEST,
-            close_timeout=PATIENCE,
+            close_timeout=_PATIENCE,
             compression=None,
         )
         self.port = self._server.sockets[0].getsockname()[1]
@@ -90,7 +92,7 @@ class AvatarServer:
         if (refusal := self._refusal(request)) is not None:
             return connection.respond(*refusal)
         path = urlsplit(request.path).path
-        if path in (PAGE, SOURCE):
+        if path in (PAGE, _SOURCE):
             return None
         if path != "/":
             return connection.respond(HTTPStatus.NOT_FOUND, "there is nothing here\n")

@@ -5,7 +5,9 @@ import numpy as np
 
 from toongeo.avatar.avatar import Avatar
 
-EXPRESSIONS = (
+__all__ = ["contact_sheet"]
+
+_EXPRESSIONS = (
     (
         "smile",
         {"mouthSmileLeft": 1.0, "mouthSmileRight": 1.0, "cheekSquintLeft": 0.5, "cheekSquintRight": 0.5},
@@ -19,8 +21,8 @@ EXPRESSIONS = (
     ("pucker", {"mouthPucker": 1.0}),
     ("looks aside", {"eyeLookOutLeft": 0.9, "eyeLookInRight": 0.9, "mouthLeft": 0.6}),
 )
-VIEWS = (("front", 0.0), ("three-quarter", 40.0), ("side", 85.0))
-INK, PAPER = (40, 40, 40), 255
+_VIEWS = (("front", 0.0), ("three-quarter", 40.0), ("side", 85.0))
+_INK, _PAPER = (40, 40, 40), 255
 
 
 def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, tile: int = 320) -> np.ndarray:
@@ -39,10 +41,10 @@ def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, til
     (3 * tile, 5 * tile, 3) uint8 RGB
     """
     views = [
-        [_titled(avatar.render(pose, tile, yaw, textured=textured), f"{look}, {name}") for name, yaw in VIEWS]
+        [_titled(avatar.render(pose, tile, yaw, textured=textured), f"{look}, {name}") for name, yaw in _VIEWS]
         for look, pose, textured in (("clay", None, False), ("as drawn", avatar.pose, True))
     ]
-    posed = [_titled(avatar.render(weights, size=tile), name) for name, weights in EXPRESSIONS]
+    posed = [_titled(avatar.render(weights, size=tile), name) for name, weights in _EXPRESSIONS]
     input_tile = _titled(_input(img, landmarks, tile), "input")
     overlay = _titled(_overlay(avatar, img, landmarks, tile), "as drawn, over input")
     rows = [
@@ -64,7 +66,7 @@ def _window(img: np.ndarray, corner: np.ndarray, scale: float, tile: int) -> np.
     method = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
     resized = cv2.resize(img, None, fx=scale, fy=scale, interpolation=method)
     shift = np.array([[1, 0, -corner[0] * scale], [0, 1, -corner[1] * scale]])
-    return cv2.warpAffine(resized, shift, (tile, tile), borderValue=(PAPER,) * 3)
+    return cv2.warpAffine(resized, shift, (tile, tile), borderValue=(_PAPER,) * 3)
 
 
 def _input(img: np.ndarray, landmarks: np.ndarray, tile: int) -> np.ndarray:
@@ -84,13 +86,13 @@ def _overlay(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, tile: int) 
 
 def _titled(view: np.ndarray, title: str) -> np.ndarray:
     view = np.ascontiguousarray(view)
-    cv2.putText(view, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, INK, 1, cv2.LINE_AA)
+    cv2.putText(view, title, (8, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, _INK, 1, cv2.LINE_AA)
     return view
 
 
 def _words(lines: list[str], tile: int) -> np.ndarray:
-    view = np.full((tile, tile, 3), PAPER, np.uint8)
+    view = np.full((tile, tile, 3), _PAPER, np.uint8)
     for i, line in enumerate(lines):
         at = (round(0.025 * tile), round((0.07 + 0.052 * i) * tile))
-        cv2.putText(view, line, at, cv2.FONT_HERSHEY_SIMPLEX, 0.0012 * tile, INK, 1, cv2.LINE_AA)
+        cv2.putText(view, line, at, cv2.FONT_HERSHEY_SIMPLEX, 0.0012 * tile, _INK, 1, cv2.LINE_AA)
     return view

@@ -3,24 +3,48 @@
 import time
 from pathlib import Path
 
+from toongeo.app.check_output import check_output
 from toongeo.app.contact_sheet import contact_sheet
 from toongeo.app.make import make
-from toongeo.io import read_image, read_landmarks, write_image
+from toongeo.io import atomic_write, read_image, read_landmarks
+from toongeo.io.side_files import check_side_files, marked_picture
 from toongeo.model import data_path
 
-PICTURE = "examples/portraits/moustache_man"
+__all__ = ["demo"]
+
+_PICTURE = "examples/portraits/moustache_man"
+_GLB, _OBJ, _SHEET = "avatar.glb", "avatar.obj", "contact-sheet.png"
+_OWNER = "toongeo demo"
 
 
 def demo(folder: Path) -> None:
-    """Write ``avatar.glb``, ``avatar.obj`` with its material and texture, and a contact sheet into a folder."""
+    """Write ``avatar.glb``, ``avatar.obj`` with its material and texture, and a contact sheet into a folder.
+
+    Raises
+    ------
+    FileExistsError
+        If one of the files is there, but not from an earlier demo; looked at before the work.
+    OSError
+        If the folder cannot be made or written to.
+    """
     started = time.perf_counter()
     folder.mkdir(parents=True, exist_ok=True)
-    image, landmarks = data_path(f"{PICTURE}.png"), data_path(f"{PICTURE}.pts")
-    avatar = make(image, landmarks, folder / "avatar.glb")
-    avatar.save(folder / "avatar.obj")
-    write_image(folder / "contact-sheet.png", contact_sheet(avatar, read_image(image), read_landmarks(landmarks)))
+    _check_folder(folder)
+    image, landmarks = data_path(f"{_PICTURE}.png"), data_path(f"{_PICTURE}.pts")
+    avatar = make(image, landmarks, folder / _GLB)
+    avatar.save(folder / _OBJ)
+    sheet = contact_sheet(avatar, read_image(image), read_landmarks(landmarks))
+    atomic_write({folder / _SHEET: marked_picture(sheet, _OWNER)})
     for path in sorted(folder.iterdir()):
         print(f"{path.stat().st_size / 1e6:7.2f} MB  {path}")
     print(
         f"{time.perf_counter() - started:.1f} s in all; drop avatar.glb into any glTF viewer, or open contact-sheet.png"
     )
+
+
+def _check_folder(folder: Path) -> None:
+    """Names that the user did not give may stand for other files; the sheet's mark tells that a demo wrote them."""
+    check_side_files([folder / _SHEET], _OWNER)
+    if not (folder / _SHEET).exists():
+        check_side_files([folder / _GLB, folder / _OBJ], _OWNER)
+    check_output(folder / _OBJ, {})

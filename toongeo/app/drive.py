@@ -2,14 +2,15 @@
 
 from pathlib import Path
 
+from toongeo.app.check_output import check_output
 from toongeo.app.read_take import read_landmark_take, read_take
 from toongeo.app.write_video import write_video
 from toongeo.avatar.load_avatar import load_avatar
 
 __all__ = ["drive"]
 
-OUTPUTS = (".mp4", ".glb")
-SIZE, FPS = 512, 30.0
+_OUTPUTS = (".mp4", ".glb")
+_SIZE, _FPS = 512, 30.0
 
 
 def drive(
@@ -18,9 +19,10 @@ def drive(
     *,
     weights: Path | None = None,
     landmarks: Path | None = None,
-    size: int = SIZE,
-    fps: float = FPS,
+    size: int = _SIZE,
+    fps: float = _FPS,
     take_fps: float | None = None,
+    scheme: str = "ibug68",
 ) -> None:
     """Play a take on an avatar and write it down.
 
@@ -40,22 +42,25 @@ def drive(
         Of the video, or of the keys.
     take_fps : float, optional
         Of a take that does not say it.
+    scheme : str
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Raises
     ------
     OSError
         If a file cannot be read or written; nothing half-written is left.
     ValueError
-        If a file is not what it should be, or an option has no such value.
+        If a file is not what it should be, the output is a file that is read, or an option has no such value.
     """
     suffix = output.suffix.lower()
-    if suffix not in OUTPUTS:
-        raise ValueError(f"output: expected a name that ends in {' or '.join(OUTPUTS)}, got {output}")
-    if not output.parent.is_dir():
-        raise OSError(f"output: no folder {output.parent} to write {output.name} to")
+    if suffix not in _OUTPUTS:
+        raise ValueError(f"output: expected a name that ends in {' or '.join(_OUTPUTS)}, got {output}")
+    check_output(output, {"avatar": avatar, "weights": weights, "landmarks": landmarks})
     if (weights is None) == (landmarks is None):
         raise ValueError("weights, landmarks: expected one of the two")
-    take = read_take(weights, take_fps) if weights else read_landmark_take(Path(str(landmarks)), take_fps)
+    take = (
+        read_take(weights, take_fps) if weights else read_landmark_take(Path(str(landmarks)), take_fps, scheme=scheme)
+    )
     take = take.resampled(fps)
     face = load_avatar(avatar)
     if suffix == ".glb":

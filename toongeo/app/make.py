@@ -6,11 +6,14 @@ from typing import Any
 
 from tqdm import tqdm
 
+from toongeo.app.check_output import check_output
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.avatar.save_avatar import writer_for
 from toongeo.io import read_image, read_landmarks
+
+__all__ = ["make"]
 
 
 def make(
@@ -22,6 +25,7 @@ def make(
     crop: Crop = "head",
     snap: bool = False,
     photometric: bool = False,
+    scheme: str = "ibug68",
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> Avatar:
@@ -33,13 +37,13 @@ def make(
     Raises
     ------
     ValueError, OSError, ImportError
-        For bad input or an output that cannot be written; the output is checked before the work.
+        For bad input or an output that cannot be written, or would replace a file that is read or was not written for
+        it; the output is checked before the work.
     """
     saving = {"crop": crop, **(options or {})}
     writer_for(output, format, saving)
-    if not output.parent.is_dir():
-        raise OSError(f"output: no folder {output.parent} to write {output.name} to")
-    img, points = read_image(image), read_landmarks(landmarks)
+    check_output(output, {"image": image, "landmarks": landmarks}, format)
+    img, points = read_image(image), read_landmarks(landmarks, scheme=scheme)
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
         def announce(stage: str) -> None:
@@ -47,7 +51,7 @@ def make(
             bar.set_description(stage)
 
         avatar = make_avatar(
-            img, points, snap=snap, photometric=photometric, texture_size=texture_size, progress=announce
+            img, points, snap=snap, photometric=photometric, texture_size=texture_size, scheme=scheme, progress=announce
         )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")

@@ -16,7 +16,7 @@ from toongeo.model.expression_schemes import EXPRESSIONS
 
 __all__ = ["serve"]
 
-FPS = 60.0
+_FPS = 60.0
 
 
 def serve(avatar: Path, *, weights: Path | None = None, port: int = 0, loop: bool = False, show: bool = True) -> None:
@@ -42,7 +42,7 @@ def serve(avatar: Path, *, weights: Path | None = None, port: int = 0, loop: boo
     OSError, ValueError
         If a file cannot be read or is not what it should be, or the port is taken.
     """
-    take = None if weights is None else read_take(weights).resampled(FPS)
+    take = None if weights is None else read_take(weights).resampled(_FPS)
     server = AvatarServer(avatar, port)
 
     def started(server: AvatarServer) -> None:
@@ -75,5 +75,5 @@ async def _play(server: AvatarServer, take: Take, loop: bool) -> None:
     clock = asyncio.get_running_loop()
     begin = clock.time()
     for count, frame in enumerate(itertools.cycle(frames) if loop else frames):
-        await asyncio.sleep(max(0.0, begin + count / FPS - clock.time()))
+        await asyncio.sleep(max(0.0, begin + count / _FPS - clock.time()))
         server.show(frame)

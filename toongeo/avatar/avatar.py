@@ -1,15 +1,20 @@
 """A textured, rigged face."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from toongeo.avatar.avatar_trimesh import avatar_trimesh
+from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.save_avatar import save_avatar
 from toongeo.avatar.stages import AvatarStages
+from toongeo.model import atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.protocols import Camera
 from toongeo.render import (
@@ -20,7 +25,12 @@ from toongeo.render import (
     studio_light,
 )
 
-HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
+if TYPE_CHECKING:
+    import trimesh
+
+__all__ = ["Avatar", "Weights"]
+
+_HEADROOM = 1.12  # of the head's height: how much of the world a picture shows
 Weights = Mapping[str, float] | np.ndarray | None
 
 
@@ -72,13 +82,17 @@ class Avatar(AvatarStages):
         """Vertices (k, 3), mm, of the left (0) or right (1) eyeball; weights and errors as for :meth:`vertices`."""
         if side not in (0, 1):
             raise ValueError(f"side: expected 0 (left) or 1 (right), got {side!r}")
+        count = len(self.eyes.templates)
+        if side >= count:
+            raise ValueError(f"side: expected an eyeball of the model, which has {count}, got {side}")
         gaze = self.rig.weights(weights)[len(self.names) :]
         return self.eyes.looking(side, dict(zip(GAZE_NAMES, gaze.tolist(), strict=True)))
 
     def surfaces(self, weights: Weights = None) -> list[Surface]:
         """Head, left and right eyeball, textured, for :func:`toongeo.render_mesh`."""
         model = self.face.model
-        head = Surface(self.vertices(weights), model.faces, uv=model.uv, uv_faces=model.uv_faces, texture=self.texture)
+        atlas = atlas_coordinates(model)
+        head = Surface(self.vertices(weights), model.faces, uv=atlas.uv, uv_faces=atlas.uv_faces, texture=self.texture)
         eyes = [
             Surface(
                 self.eye_vertices(side, weights),
@@ -132,6 +146,32 @@ class Avatar(AvatarStages):
         # The texture holds the light of the picture already: a soft light shows the shape without shading it twice.
         return render_mesh(surfaces, camera, size, light=_soft_light())
 
+    def to_trimesh(self, weights: Weights = None, *, crop: Crop = "head", textured: bool = True) -> trimesh.Scene:
+        """Head, teeth, tongue and eyeballs with an expression, as ``trimesh.Trimesh`` objects.
+
+        Parameters
+        ----------
+        weights
+            As for :meth:`vertices`.
+        crop : {"head", "bust", "face"}
+            As for :meth:`save`.
+        textured : bool
+            True: with the texture, for which vertices on seams are repeated. False: vertices and triangles alone; those
+            of a whole head without its parts are ``trimesh.Trimesh(avatar.vertices(), avatar.faces, process=False)``.
+
+        Returns
+        -------
+        trimesh.Scene
+            Geometries ``head``, ``teeth``, ``tongue``, ``eye_left`` and ``eye_right``; mm, model frame.
+
+        Raises
+        ------
+        ValueError
+            For weights as :meth:`vertices`; for an unknown crop.
+        """
+        eyes = [self.eye_vertices(side, weights) for side in range(len(self.eyes.templates))]
+        return avatar_trimesh(self, self.vertices(weights), eyes, crop=crop, textured=textured)
+
     def save(self, path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> None:
         """Write a file by its suffix, or what a format names.
 
@@ -140,10 +180,13 @@ class Avatar(AvatarStages):
         ``.vrm``          VRM 1.0 with a body of bones alone; ``crop normals texture meta``
         ``.html``         a page with sliders that needs no network; ``crop quantize texture animation title``
         ``.usdz``         with blend shapes, needs the extra ``usd``; ``crop names``
-        ``.obj``          with ``.mtl`` and ``.png`` beside it; ``crop``
+        ``.obj``          ``face.obj`` with ``face.mtl`` and ``face_texture.png`` beside it; ``crop``
         ``.ply``          with uv, and colours at the vertices; ``crop``
-        ``obj-sequence``  a folder with an ``.obj`` an expression; ``crop names``
+        ``obj-sequence``  a folder with an ``.obj`` an expression, ``face.mtl``, ``face_texture.png``; ``crop names``
         ================  ================================================================================
+
+        The file of this name is replaced. Those that come along with it, or stand in the folder, replace only what was
+        written for the same output before.
 
         Parameters
         ----------
@@ -183,6 +226,8 @@ class Avatar(AvatarStages):
             the avatar is of a kind that a loadable file cannot hold.
         ImportError
             If ``.usdz`` is asked for without the extra.
+        FileExistsError
+            If a file that comes along would replace one that was not written for this output.
         OSError
             If a file cannot be written; nothing half-written is left.
         """
@@ -192,7 +237,7 @@ class Avatar(AvatarStages):
         skin = self.rig.neutral[self.face.region("skin")]
         low, high = skin.min(0), skin.max(0)
         return ScaledOrthographicCamera.look(
-            yaw, pitch, size=size, centre=(low + high) / 2, extent=HEADROOM * (high - low).max()
+            yaw, pitch, size=size, centre=(low + high) / 2, extent=_HEADROOM * (high - low).max()
         )
 
 

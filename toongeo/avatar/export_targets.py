@@ -8,6 +8,8 @@ from toongeo.avatar.scene import Shapes
 from toongeo.io import Scene
 from toongeo.model.expression_schemes import PRESETS, SCHEMES
 
+__all__ = ["Names", "PLAYER_MESHES", "PLAYER_ROOT", "export_targets", "renamed_scene"]
+
 Names = Literal["toongeo", "arkit", "talkinghead"]
 # What players that speak by Oculus visemes look for, as in avatars of Ready Player Me: meshes below a node, 15 visemes
 # of which three have letters for names, and five mixtures.
@@ -20,8 +22,8 @@ PLAYER_MESHES = {
     "eye_right": "EyeRight",
 }
 _LETTERS = {"ih": "I", "oh": "O", "ou": "U"}
-PLAYER_VISEMES = [(f"viseme_{_LETTERS.get(name, name)}", f"viseme_{name}") for name in SCHEMES["oculus"]]
-PLAYER_EXTRAS: Shapes = [
+_PLAYER_VISEMES = [(f"viseme_{_LETTERS.get(name, name)}", f"viseme_{name}") for name in SCHEMES["oculus"]]
+_PLAYER_EXTRAS: Shapes = [
     ("mouthOpen", {"jawOpen": 1.0}),
     ("mouthSmile", {"mouthSmileLeft": 1.0, "mouthSmileRight": 1.0}),
     ("eyesClosed", {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}),
@@ -39,8 +41,8 @@ def export_targets(names: Names) -> Shapes | None:
     if names == "talkinghead":
         return [
             *SCHEMES["arkit"].items(),
-            *((name, PRESETS[viseme]) for name, viseme in PLAYER_VISEMES),
-            *PLAYER_EXTRAS,
+            *((name, PRESETS[viseme]) for name, viseme in _PLAYER_VISEMES),
+            *_PLAYER_EXTRAS,
         ]
     raise ValueError(f"names: expected one of {', '.join(get_args(Names))}, got {names!r}")
 

@@ -9,7 +9,9 @@ from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit
 
-FEW_INTERSECTIONS = 0.003  # of the triangles of the face; more are worth a warning
+__all__ = ["AvatarReport", "landmark_errors", "shape_warnings"]
+
+_FEW_INTERSECTIONS = 0.003  # of the triangles of the face; more are worth a warning
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,9 +60,9 @@ def landmark_errors(face: FaceFit | AlignedFace, landmarks: np.ndarray) -> dict[
 def shape_warnings(face: AlignedFace, eyes: Eyes, quality: MeshQuality) -> list[str]:
     """What seems wrong with the shape of a face."""
     warnings = []
-    if quality.intersecting_fraction > FEW_INTERSECTIONS:
+    if quality.intersecting_fraction > _FEW_INTERSECTIONS:
         warnings.append(f"{100 * quality.intersecting_fraction:.1f} % of the face's triangles intersect others")
-    for side, name in enumerate(SIDES):
+    for side, name in enumerate(SIDES[: len(eyes.templates)]):
         skin = face.region("skin") & ~face.region(f"eye_{name}")
         inside = np.linalg.norm(face.vertices[skin] - eyes.centres[side], axis=1) < eyes.radii[side]
         if inside.any():

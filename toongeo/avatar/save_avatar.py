@@ -12,7 +12,7 @@ import numpy as np
 
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.export_targets import PLAYER_MESHES, PLAYER_ROOT, Names, export_targets, renamed_scene
-from toongeo.avatar.scene import avatar_scene, demo_clip, weight_clip
+from toongeo.avatar.scene import avatar_scene, demo_clip, own_shapes, weight_clip
 from toongeo.avatar.stages import AvatarStages
 from toongeo.avatar.state import encode_state
 from toongeo.io import (
@@ -35,12 +35,14 @@ from toongeo.model.expression_schemes import PRESETS, SCHEMES
 from toongeo.pipeline import Rig
 from toongeo.render import sample_image, uv_to_px
 
-Weights = Mapping[str, float]
-Texture = Literal["png", "jpeg"] | None
-Animation = Literal["demo"] | None | tuple[Any, Any]
-EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
-COARSE_MM = 0.04  # the same for a quantized file: a fifth of a pixel where a head is a thousand high
-COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
+__all__ = ["avatar_attachment", "page_presets", "rig_arrays", "save_avatar", "writer_for"]
+
+_Weights = Mapping[str, float]
+_Texture = Literal["png", "jpeg"] | None
+_Animation = Literal["demo"] | None | tuple[Any, Any]
+_EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
+_COARSE_MM = 0.04  # the same for a quantized file: a fifth of a pixel where a head is a thousand high
+_COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
 
 
 def save_avatar(path: Path, avatar: AvatarStages, kind: str | None, options: Mapping[str, Any]) -> None:
@@ -51,11 +53,11 @@ def save_avatar(path: Path, avatar: AvatarStages, kind: str | None, options: Map
 def writer_for(path: Path, kind: str | None, options: Mapping[str, Any]) -> Callable[..., None]:
     """The writer of a format, or of a suffix if that is None; errors as of :meth:`toongeo.Avatar.save`."""
     suffix = path.suffix.lower() if kind is None else kind
-    writer = WRITERS.get(suffix)
+    writer = _WRITERS.get(suffix)
     if writer is None and kind is None:
-        raise ValueError(f"path: expected a name that ends in {', '.join(SUFFIXES)}, got {path}")
+        raise ValueError(f"path: expected a name that ends in {', '.join(_SUFFIXES)}, got {path}")
     if writer is None:
-        raise ValueError(f"format: expected one of {', '.join(WRITERS)}, got {kind!r}")
+        raise ValueError(f"format: expected one of {', '.join(_WRITERS)}, got {kind!r}")
     known = list(inspect.signature(writer).parameters)[2:]
     for name in options:
         if name not in known:
@@ -72,8 +74,8 @@ def _write_glb(
     crop: Crop = "head",
     quantize: bool = False,
     normals: bool = False,
-    texture: Texture = "png",
-    animation: Animation = "demo",
+    texture: _Texture = "png",
+    animation: _Animation = "demo",
     names: Names = "toongeo",
     sparse: bool = True,
     loadable: bool = True,
@@ -93,7 +95,7 @@ def _write_glb(
         path,
         scene,
         normal_deltas=normals,
-        tolerance_mm=COARSE_MM if quantize else EXACT_MM,
+        tolerance_mm=_COARSE_MM if quantize else _EXACT_MM,
         quantize=quantize,
         picture=texture or "png",
         sparse=sparse,
@@ -108,9 +110,11 @@ def _write_vrm(
     *,
     crop: Crop = "head",
     normals: bool = False,
-    texture: Texture = "png",
+    texture: _Texture = "png",
     meta: VrmMeta | None = None,
 ) -> None:
+    if not avatar.eyes.templates:
+        raise ValueError("avatar: expected one with eyeballs for .vrm, whose bones turn them, got none from its model")
     scene = avatar_scene(avatar, crop=crop, textured=_check_texture(texture) is not None)
     # Bones turn the eyes, which therefore need no targets; the lids that follow are the head's.
     still = (replace(m, targets=None, target_names=()) if m.name.startswith("eye_") else m for m in scene.meshes)
@@ -119,11 +123,11 @@ def _write_vrm(
     write_vrm(
         path,
         Scene(tuple(still)),
-        {**SCHEMES["vrm"], **SCHEMES["arkit"]},
+        _shown({**SCHEMES["vrm"], **SCHEMES["arkit"]}, avatar.rig),
         meta=meta,
         gaze_degrees=(sideways, updown),
         normal_deltas=normals,
-        tolerance_mm=EXACT_MM,
+        tolerance_mm=_EXACT_MM,
         picture=texture or "png",
     )
 
@@ -132,7 +136,7 @@ def avatar_attachment(avatar: AvatarStages, *, coarse: bool) -> bytes:
     """All of an avatar that its meshes and its texture do not tell."""
     parse = avatar.parse
     if coarse:
-        steps = np.float32(COARSE_STEPS)
+        steps = np.float32(_COARSE_STEPS)
         parse = replace(parse, confidence=np.rint(parse.confidence * steps) / steps)
     # The camera's picture is known to the reader as the file's image, the rig's arrays as its meshes.
     state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name != "texture"}
@@ -144,7 +148,7 @@ def rig_arrays(rig: Rig) -> dict[str, np.ndarray]:
     return {"neutral": rig.neutral, "deltas": rig.deltas, "gaze": rig.gaze}
 
 
-def _animation(rig: Rig, animation: Animation) -> SceneAnimation | None:
+def _animation(rig: Rig, animation: _Animation) -> SceneAnimation | None:
     if animation is None:
         return None
     if isinstance(animation, tuple) and len(animation) == 2:
@@ -154,7 +158,7 @@ def _animation(rig: Rig, animation: Animation) -> SceneAnimation | None:
     raise ValueError(f"animation: expected 'demo', None or a pair of times and weights, got {animation!r}")
 
 
-def _check_texture(texture: Texture) -> Texture:
+def _check_texture(texture: _Texture) -> _Texture:
     if texture not in ("png", "jpeg", None):
         raise ValueError(f"texture: expected 'png', 'jpeg' or None, got {texture!r}")
     return texture
@@ -194,7 +198,7 @@ def _joined(parts: list[tuple[Any, Any]]) -> tuple[np.ndarray, np.ndarray]:
 
 def _write_usdz(path: Path, avatar: AvatarStages, *, crop: Crop = "head", names: Names = "toongeo") -> None:
     shapes = export_targets(names)
-    write_usdz(path, avatar_scene(avatar, crop=crop, shapes=shapes), tolerance_mm=EXACT_MM)
+    write_usdz(path, avatar_scene(avatar, crop=crop, shapes=shapes), tolerance_mm=_EXACT_MM)
 
 
 def _write_html(
@@ -203,8 +207,8 @@ def _write_html(
     *,
     crop: Crop = "head",
     quantize: bool = True,
-    texture: Texture = "png",
-    animation: Animation = "demo",
+    texture: _Texture = "png",
+    animation: _Animation = "demo",
     title: str | None = None,
 ) -> None:
     scene = avatar_scene(
@@ -213,18 +217,27 @@ def _write_html(
         animation=_animation(avatar.rig, animation),
         textured=_check_texture(texture) is not None,
     )
-    tolerance = COARSE_MM if quantize else EXACT_MM
+    tolerance = _COARSE_MM if quantize else _EXACT_MM
     glb = encode_glb(scene, tolerance_mm=tolerance, quantize=quantize, picture=texture or "png")
-    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets())
+    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets(avatar.rig))
     atomic_write({path: page.encode("utf-8")})
 
 
-def page_presets() -> dict[str, Weights]:
-    """Whole expressions for the buttons of a page: no shapes of speech, no parts of faces."""
-    return {name: dict(weights) for name, weights in PRESETS.items() if weights and not name.startswith("viseme_")}
+def page_presets(rig: Rig | None = None) -> dict[str, _Weights]:
+    """Whole expressions that a rig can show, for the buttons of a page: no shapes of speech, no parts of faces."""
+    whole: dict[str, _Weights] = {
+        name: dict(weights) for name, weights in PRESETS.items() if weights and not name.startswith("viseme_")
+    }
+    return whole if rig is None else _shown(whole, rig)
 
 
-WRITERS: dict[str, Callable[..., None]] = {
+def _shown(expressions: Mapping[str, _Weights], rig: Rig) -> dict[str, _Weights]:
+    """Those among them of which a rig has all parts."""
+    known = {name for name, _ in own_shapes(rig)}
+    return {name: dict(weights) for name, weights in expressions.items() if known.issuperset(weights)}
+
+
+_WRITERS: dict[str, Callable[..., None]] = {
     ".glb": _write_glb,
     ".obj": _write_obj,
     ".ply": _write_ply,
@@ -233,4 +246,4 @@ WRITERS: dict[str, Callable[..., None]] = {
     ".html": _write_html,
     "obj-sequence": _write_obj_sequence,
 }
-SUFFIXES = tuple(name for name in WRITERS if name.startswith("."))
+_SUFFIXES = tuple(name for name in _WRITERS if name.startswith("."))

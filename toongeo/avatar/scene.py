@@ -11,15 +11,17 @@ from toongeo.avatar.crop_faces import Crop, crop_faces
 from toongeo.avatar.stages import AvatarStages
 from toongeo.geometry import vertex_normals
 from toongeo.io import Scene, SceneAnimation, SceneMesh
-from toongeo.model import MorphableModel
+from toongeo.model import MorphableModel, atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES, gaze_names
 from toongeo.model.anatomy.parts import SIDES, TEETH
 from toongeo.pipeline import Eyes, Rig
 from toongeo.render import sample_image, uv_to_px
 
-FRAMES_PER_SECOND = 30
+__all__ = ["Shapes", "avatar_scene", "demo_clip", "head_parts", "own_shapes", "weight_clip"]
+
+_FRAMES_PER_SECOND = 30
 # The clip: (seconds, weights reached then), linear in between.
-CLIP: tuple[tuple[float, dict[str, float]], ...] = (
+_CLIP: tuple[tuple[float, dict[str, float]], ...] = (
     (0.0, {}),
     (0.5, {}),
     (0.6, {"eyeBlinkLeft": 1, "eyeBlinkRight": 1}),
@@ -31,8 +33,8 @@ CLIP: tuple[tuple[float, dict[str, float]], ...] = (
     (3.8, {}),
 )
 # Parts of the head that are meshes of their own, by regions of the model; the rest is the mesh "head".
-PARTS = {"teeth": TEETH, "tongue": ("tongue",)}
-STILL_MM = 1e-4  # a target that moves no vertex of a part by more is not among the part's
+_PARTS = {"teeth": TEETH, "tongue": ("tongue",)}
+_STILL_MM = 1e-4  # a target that moves no vertex of a part by more is not among the part's
 Shapes = Sequence[tuple[str, Mapping[str, float]]]
 
 
@@ -90,9 +92,8 @@ def head_parts(model: MorphableModel, crop: Crop = "head") -> dict[str, np.ndarr
     """Rows of ``model.faces`` that each mesh of the head has; parts without triangles are left out."""
     kept = crop_faces(model, crop)
     rest, parts = np.ones(len(kept), bool), {}
-    for name, regions in PARTS.items():
-        masks = [model.regions[region] for region in regions if region in model.regions]
-        inside = np.any(masks, axis=0)[model.faces[kept]].all(axis=1) if masks else ~rest & False
+    for name, regions in _PARTS.items():
+        inside = np.any([model.region(region) for region in regions], axis=0)[model.faces[kept]].all(axis=1)
         parts[name] = kept[inside]
         rest &= ~inside
     return {name: faces for name, faces in {"head": kept[rest], **parts}.items() if len(faces)}
@@ -100,9 +101,9 @@ def head_parts(model: MorphableModel, crop: Crop = "head") -> dict[str, np.ndarr
 
 def demo_clip(rig: Rig) -> SceneAnimation:
     """A few seconds that show what a face can do, for :func:`avatar_scene`."""
-    keys = np.array([seconds for seconds, _ in CLIP])
-    times = np.arange(round(keys[-1] * FRAMES_PER_SECOND) + 1) / FRAMES_PER_SECOND
-    at_keys = np.array([[then.get(name, 0.0) for name, _ in own_shapes(rig)] for _, then in CLIP])
+    keys = np.array([seconds for seconds, _ in _CLIP])
+    times = np.arange(round(keys[-1] * _FRAMES_PER_SECOND) + 1) / _FRAMES_PER_SECOND
+    at_keys = np.array([[then.get(name, 0.0) for name, _ in own_shapes(rig)] for _, then in _CLIP])
     columns = [np.interp(times, keys, column) for column in at_keys.T]
     return SceneAnimation(times, {"head": np.column_stack(columns)}, name="demo")
 
@@ -133,14 +134,15 @@ def weight_clip(rig: Rig, times: object, weights: object) -> SceneAnimation:
 def _part(avatar: AvatarStages, name: str, kept: np.ndarray, shapes: Shapes, crop: Crop) -> SceneMesh:
     rig, model = avatar.rig, avatar.face.model
     used, faces = np.unique(model.faces[kept], return_inverse=True)
-    used_uv, uv_faces = np.unique(model.uv_faces[kept], return_inverse=True)
+    atlas = atlas_coordinates(model)
+    used_uv, uv_faces = np.unique(atlas.uv_faces[kept], return_inverse=True)
     targets = np.stack([_delta(rig, weights, used) for _, weights in shapes])
-    moving = np.full(len(shapes), True) if name == "head" else np.abs(targets).max(axis=(1, 2)) > STILL_MM
+    moving = np.full(len(shapes), True) if name == "head" else np.abs(targets).max(axis=(1, 2)) > _STILL_MM
     return SceneMesh(
         name=name,
         vertices=rig.neutral[used],
         faces=faces.reshape(-1, 3),
-        uv=model.uv[used_uv],
+        uv=atlas.uv[used_uv],
         uv_faces=uv_faces.reshape(-1, 3),
         # A cut-out face is shaded like the whole head: its own normals would turn at the cut.
         normals=vertex_normals(rig.neutral, model.faces)[used] if crop == "face" else None,
@@ -151,12 +153,13 @@ def _part(avatar: AvatarStages, name: str, kept: np.ndarray, shapes: Shapes, cro
 
 
 def _delta(rig: Rig, weights: Mapping[str, float], used: np.ndarray) -> np.ndarray:
-    """What the weights add to the used vertices, mm."""
+    """What the weights add to the used vertices, mm; expressions that the rig does not have add nothing."""
     delta = np.zeros((len(used), 3), np.float32)
     for name, weight in weights.items():
         gaze = name in GAZE_NAMES
-        shape = rig.gaze[GAZE_NAMES.index(name)] if gaze else rig.deltas[rig.names.index(name)]
-        delta += np.float32(weight) * shape[used]
+        if gaze or name in rig.names:
+            shape = rig.gaze[GAZE_NAMES.index(name)] if gaze else rig.deltas[rig.names.index(name)]
+            delta += np.float32(weight) * shape[used]
     return delta
 
 

@@ -15,15 +15,18 @@ import numpy as np
 from toongeo.avatar.report import AvatarReport
 from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
-from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
+from toongeo.pipeline import AlignedFace, AlignReport, Eyes, FaceFit, Rig, RigReport
 from toongeo.pipeline.fit.face_fit import FitReport, PhotometricReport
 from toongeo.protocols import FaceParse
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 
-TIMES = "seconds"  # what a run took is not kept: one input gives one file, bit for bit
-CLASSES: dict[str, Any] = {
+__all__ = ["decode_state", "encode_state", "model_checksum"]
+
+_TIMES = "seconds"  # what a run took is not kept: one input gives one file, bit for bit
+_CLASSES: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
+        AlignReport,
         AlignedFace,
         AvatarReport,
         EyeballTemplate,
@@ -35,11 +38,12 @@ CLASSES: dict[str, Any] = {
         PerspectiveCamera,
         PhotometricReport,
         Rig,
+        RigReport,
         ScaledOrthographicCamera,
     )
 }
-VERSION = 1
-MOST_BYTES = 1 << 30  # that a file may ask for
+_VERSION = 1
+_MOST_BYTES = 1 << 30  # that a file may ask for
 
 
 def encode_state(state: Mapping[str, Any], known: Mapping[str, np.ndarray], model: MorphableModel) -> bytes:
@@ -48,7 +52,7 @@ def encode_state(state: Mapping[str, Any], known: Mapping[str, np.ndarray], mode
     Parameters
     ----------
     state : name -> value
-        Numbers, texts, None, arrays, tuples, lists, mappings by text, and the dataclasses ``CLASSES``, nested.
+        Numbers, texts, None, arrays, tuples, lists, mappings by text, and the dataclasses ``_CLASSES``, nested.
     known : name -> array
         Arrays that the reader will have from elsewhere; one that is equal is not stored.
     model : MorphableModel
@@ -61,7 +65,7 @@ def encode_state(state: Mapping[str, Any], known: Mapping[str, np.ndarray], mode
     """
     writer = _Writer(known, model)
     tree = {name: writer.node(value, name) for name, value in state.items()}
-    head = {"version": VERSION, "model": model_checksum(model), "state": tree, "arrays": writer.described()}
+    head = {"version": _VERSION, "model": model_checksum(model), "state": tree, "arrays": writer.described()}
     text = json.dumps(head, separators=(",", ":")).encode()
     content = len(text).to_bytes(8, "little") + text + b"".join(map(_packed, writer.arrays))
     return len(content).to_bytes(8, "little") + zlib.compress(content, 6)
@@ -77,13 +81,13 @@ def decode_state(content: bytes, known: Mapping[str, np.ndarray], model: Morphab
     """
     try:
         size = int.from_bytes(content[:8], "little")
-        if not 8 <= size <= MOST_BYTES:
+        if not 8 <= size <= _MOST_BYTES:
             raise ValueError(f"it announces {size} bytes")
         # Never more than announced, whatever the compressed bytes would grow to.
         data = zlib.decompressobj().decompress(content[8:], size)
         start = 8 + int.from_bytes(data[:8], "little")
         head = json.loads(data[8:start])
-        if len(data) != size or head["version"] != VERSION:
+        if len(data) != size or head["version"] != _VERSION:
             raise ValueError(f"it is of version {head['version']} and has {len(data)} bytes of {size}")
         same_model = head["model"] == model_checksum(model)
         arrays = _arrays(memoryview(data)[start:], head["arrays"])
@@ -114,7 +118,7 @@ class _Writer:
         self.arrays: list[np.ndarray] = []
 
     def node(self, value: Any, where: str) -> Any:
-        if isinstance(value, float) and TIMES in where.split("."):
+        if isinstance(value, float) and _TIMES in where.split("."):
             return 0.0
         if value is None or isinstance(value, bool | int | float | str):
             return value
@@ -131,10 +135,10 @@ class _Writer:
         for side, eye in enumerate(self.model.eyes):
             if value is eye:
                 return {"eye": side}
-        if is_dataclass(value) and type(value) is CLASSES.get(type(value).__name__):
+        if is_dataclass(value) and type(value) is _CLASSES.get(type(value).__name__):
             parts = {field.name: getattr(value, field.name) for field in fields(value) if field.init}
             return {type(value).__name__: {name: self.node(v, f"{where}.{name}") for name, v in parts.items()}}
-        kinds = f"numbers, texts, arrays or {', '.join(CLASSES)}"
+        kinds = f"numbers, texts, arrays or {', '.join(_CLASSES)}"
         raise ValueError(f"{where}: expected {kinds} in a loadable file, got {type(value)}")
 
     def _array(self, value: np.ndarray, where: str) -> dict[str, Any]:
@@ -169,7 +173,7 @@ class _Reader:
             return simple[kind][content]
         if kind == "model":
             return self.model
-        return CLASSES[kind](**{name: self.value(part) for name, part in content.items()})
+        return _CLASSES[kind](**{name: self.value(part) for name, part in content.items()})
 
 
 def _packed(array: np.ndarray) -> bytes:

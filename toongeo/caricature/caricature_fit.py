@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.geometry import vertex_normals
 from toongeo.model.morphable_model import MorphableModel
@@ -16,8 +17,6 @@ from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.protocols import HeadCamera
 
 __all__ = ["CaricatureFit", "CaricatureReport"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

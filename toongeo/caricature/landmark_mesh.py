@@ -6,14 +6,13 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.caricature.space.deformation_space import DeformationSpace
 from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.operators.factor import factor_spd, solve
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["LandmarkMesh"]
-
-Floats = NDArray[np.float64]
 
 _FLIP = np.array([1.0, -1.0])
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["linear_to_srgb", "srgb_to_linear"]
+__all__ = ["linear_slope", "linear_to_srgb", "srgb_to_linear"]
 
 # The standard's rounded thresholds, 0.04045 and 0.0031308, leave a step of 1e-8 between the two branches.
 _ENCODED_THRESHOLD, _LINEAR_THRESHOLD = 0.04045, 0.0031308
@@ -60,6 +60,18 @@ def linear_to_srgb(linear: ArrayLike) -> NDArray[Any]:
     values = _floating(np.asarray(linear))
     curved = 1.055 * np.maximum(values, _LINEAR_THRESHOLD) ** (1.0 / 2.4) - 0.055
     return np.where(values <= _LINEAR_THRESHOLD, values * 12.92, curved)
+
+
+def linear_slope(srgb: NDArray[Any]) -> NDArray[Any]:
+    """Derivative of `srgb_to_linear` at floats of any shape.
+
+    Examples
+    --------
+    >>> linear_slope(np.array([0.0, 1.0])).round(4)
+    array([0.0774, 2.2749])
+    """
+    curved = 2.4 / 1.055 * ((np.maximum(srgb, _ENCODED_THRESHOLD) + 0.055) / 1.055) ** 1.4
+    return np.where(srgb <= _ENCODED_THRESHOLD, 1 / 12.92, curved)
 
 
 def _decode(values: NDArray[Any]) -> NDArray[Any]:

@@ -6,15 +6,14 @@ import os
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from toongeo.arrays import Floats
 from toongeo.driving.read_live_link import read_live_link, scheme_matrix
 from toongeo.driving.take import Take
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 __all__ = ["ArkitDriver"]
-
-Floats = NDArray[np.float64]
 
 
 class ArkitDriver:

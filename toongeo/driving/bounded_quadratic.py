@@ -1,13 +1,12 @@
 """The minimum of a small convex quadratic function in a box."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats
 
 __all__ = ["bounded_quadratic"]
 
-Floats = NDArray[np.float64]
-
-_ROUNDS = 100
+_ROUNDS = 100  # a variable, at most: a guard against endless loops
 
 
 def bounded_quadratic(H: Floats, g: Floats, low: Floats, high: Floats, x: Floats) -> Floats:

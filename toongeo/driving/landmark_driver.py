@@ -1,12 +1,16 @@
-"""Expression weights from the landmarks of another face."""
+"""Expression weights from the landmarks of another face.
+
+Constants were judged on the heads of the seven examples (``benchmarks/driving.py``).
+"""
 
 from __future__ import annotations
 
 from collections import deque
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from toongeo.arrays import Floats
 from toongeo.avatar.avatar import Avatar
 from toongeo.driving.landmark_frames import landmark_frames
 from toongeo.driving.landmark_pose import FEWEST, LandmarkPose, landmark_pose
@@ -18,13 +22,11 @@ from toongeo.pipeline import Rig
 
 __all__ = ["LandmarkDriver", "LiveLandmarks"]
 
-Floats = NDArray[np.float64]
-
-FIRST_NOISE = 1e-3  # of the face's width: what is assumed before anything is known
+_FIRST_NOISE = 1e-3  # of the face's width: what is assumed before anything is known
 LEAST_NOISE = 1e-5  # so that landmarks without noise are explained exactly
-CAUTION = 2.0  # how much more noise the weights assume than there is: quiet weights are worth a little bias
-REMEMBERED = 90  # frames from which live noise is told
-UNKNOWNS = 40  # about as many of the 136 coordinates are explained by weights and pose, whatever they are
+_CAUTION = 2.0  # how much more noise the weights assume than there is: quiet weights are worth a little bias
+_REMEMBERED = 90  # frames from which live noise is told
+_UNKNOWNS = 40  # about as many of the 136 coordinates are explained by weights and pose, whatever they are
 
 
 class LandmarkDriver:
@@ -39,6 +41,8 @@ class LandmarkDriver:
     performer : Avatar, LandmarkRig, (68, 2) px landmarks of a neutral frame, or None
         Whose landmarks will be seen. The better it is known, the better the weights: an avatar of the performer knows
         most; of a neutral frame a face is fitted; with None the face is found from the sequence itself.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What all landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Examples
     --------
@@ -56,14 +60,15 @@ class LandmarkDriver:
 
     names = EXPRESSIONS
 
-    def __init__(self, performer: Avatar | LandmarkRig | ArrayLike | None = None) -> None:
+    def __init__(self, performer: Avatar | LandmarkRig | ArrayLike | None = None, *, scheme: str = "ibug68") -> None:
+        self._scheme = scheme
         self._rig: LandmarkRig | None
         if performer is None or isinstance(performer, LandmarkRig):
             self._rig = performer
         elif isinstance(rig := getattr(performer, "rig", None), Rig):
             self._rig = LandmarkRig.of_rig(rig, performer.face.landmark_vertices)  # type: ignore[union-attr]
         else:
-            self._rig = LandmarkRig.of_neutral(landmark_frames(performer, "performer")[0])
+            self._rig = LandmarkRig.of_neutral(landmark_frames(performer, "performer", scheme)[0])
 
     def frames(self, recording: ArrayLike, fps: float = 30.0) -> Floats:
         """Weights (f, 54) in [0, 1] of the expressions ``names`` for a whole sequence.
@@ -84,7 +89,7 @@ class LandmarkDriver:
         ValueError
             If the shape is another, the rate is not positive, or no frame has enough landmarks.
         """
-        sequence = landmark_frames(recording)
+        sequence = landmark_frames(recording, scheme=self._scheme)
         if not (np.isfinite(fps) and fps > 0):
             raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
         with one_thread():
@@ -110,7 +115,7 @@ class LandmarkDriver:
         """
         if self._rig is None:
             raise ValueError("performer: expected an avatar or a neutral frame for live driving, got None")
-        return LiveLandmarks(self._rig)
+        return LiveLandmarks(self._rig, self._scheme)
 
 
 class LiveLandmarks:
@@ -119,11 +124,11 @@ class LiveLandmarks:
     Smooths by what has come so far, so it follows a little later than :meth:`LandmarkDriver.frames`.
     """
 
-    def __init__(self, rig: LandmarkRig) -> None:
-        self._rig = rig
+    def __init__(self, rig: LandmarkRig, scheme: str = "ibug68") -> None:
+        self._rig, self._scheme = rig, scheme
         self._weights = [np.zeros(len(rig.names)), np.zeros(len(rig.names))]  # of the frame as it is, and smoothed
-        self._filter = OneEuroFilter(FIRST_NOISE * rig.width)
-        self._errors: deque[Floats] = deque(maxlen=REMEMBERED)
+        self._filter = OneEuroFilter(_FIRST_NOISE * rig.width)
+        self._errors: deque[Floats] = deque(maxlen=_REMEMBERED)
 
     def __call__(self, landmarks: ArrayLike, time: float) -> Floats:
         """Weights (54,) in [0, 1] of landmarks (68, 2) px at a time in s.
@@ -135,15 +140,15 @@ class LiveLandmarks:
         ValueError
             If the landmarks have another shape or are infinite.
         """
-        rig, pixels = self._rig, landmark_frames(landmarks)[0]
+        rig, pixels = self._rig, landmark_frames(landmarks, "landmarks", self._scheme)[0]
         if np.isfinite(pixels).all(axis=1).sum() >= FEWEST:
             with one_thread():
-                pose = landmark_pose(rig, pixels, self._weights[0], FIRST_NOISE)
+                pose = landmark_pose(rig, pixels, self._weights[0], _FIRST_NOISE)
                 self._errors.append(pose.errors(pixels, rig))
                 noise = noise_of(np.array(self._errors))
                 self._filter.noise = noise * rig.width
                 there = self._filter(pose.head_frame(pixels, rig), time)
-                smooth = landmark_pose(rig, pose.picture(there, rig), self._weights[1], CAUTION * noise)
+                smooth = landmark_pose(rig, pose.picture(there, rig), self._weights[1], _CAUTION * noise)
             self._weights = [pose.weights, smooth.weights]
         return _all_weights(self._weights[1][None], rig.names)[0]
 
@@ -155,19 +160,19 @@ def noise_of(errors: Floats) -> float:
     median tells it although some frames jump.
     """
     if len(errors) < 3:
-        return FIRST_NOISE
+        return _FIRST_NOISE
     jerk = np.abs(np.diff(errors, 2, axis=0))
     if not np.isfinite(jerk).any():
-        return FIRST_NOISE
+        return _FIRST_NOISE
     normal = np.sqrt(6) * 0.6745  # of the median of |x - 2 y + z| for unit normal x, y, z
-    explained = np.sqrt(1 - UNKNOWNS / 136)  # part of the noise that weights and pose have taken up
+    explained = np.sqrt(1 - _UNKNOWNS / 136)  # part of the noise that weights and pose have taken up
     return max(float(np.nanmedian(jerk)) / normal / explained, LEAST_NOISE)
 
 
 def doubt_of(errors: Floats) -> float:
     """How far to mistrust landmarks with errors (f, 68, 2): what is unexplained is noise, or a face not quite known."""
-    unexplained = float(np.nanmedian(np.abs(errors))) / 0.6745 / np.sqrt(1 - UNKNOWNS / 136)
-    return max(CAUTION * unexplained, LEAST_NOISE)
+    unexplained = float(np.nanmedian(np.abs(errors))) / 0.6745 / np.sqrt(1 - _UNKNOWNS / 136)
+    return max(_CAUTION * unexplained, LEAST_NOISE)
 
 
 def _poses(rig: LandmarkRig, sequence: Floats) -> list[LandmarkPose]:
@@ -177,7 +182,7 @@ def _poses(rig: LandmarkRig, sequence: Floats) -> list[LandmarkPose]:
         raise ValueError(f"recording: expected a frame with at least {FEWEST} landmarks, got none")
     weights, poses = np.zeros(len(rig.names)), {}
     for i in np.flatnonzero(seen):
-        poses[i] = landmark_pose(rig, sequence[i], weights, FIRST_NOISE)
+        poses[i] = landmark_pose(rig, sequence[i], weights, _FIRST_NOISE)
         weights = poses[i].weights
     known = np.maximum.accumulate(np.where(seen, np.arange(len(seen)), seen.argmax()))
     return [poses[i] for i in known]

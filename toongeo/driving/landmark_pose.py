@@ -1,12 +1,15 @@
-"""Pose and expression of a known face from one frame of landmarks."""
+"""Pose and expression of a known face from one frame of landmarks.
+
+Constants were judged on the heads of the seven examples (``benchmarks/driving.py``).
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.driving.bounded_quadratic import bounded_quadratic
 from toongeo.driving.landmark_rig import LandmarkRig
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
@@ -14,16 +17,14 @@ from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 
 __all__ = ["FEWEST", "LandmarkPose", "landmark_pose"]
 
-Floats = NDArray[np.float64]
-
 FEWEST = 12  # landmarks that a frame must have
-SPREAD = 1.0  # s.d. of a weight before anything is seen
-SPARSITY = 1.0  # how much a weight of 1 costs beside: few expressions explain a face better than many
-OUTLIER = 0.01  # of the face's width: an error that counts a quarter
-POSE = 6  # rotation vector, log scale, translation
+_SPREAD = 1.0  # s.d. of a weight before anything is seen
+_SPARSITY = 1.0  # how much a weight of 1 costs beside: few expressions explain a face better than many
+_OUTLIER = 0.01  # of the face's width: an error that counts a quarter
+_POSE = 6  # rotation vector, log scale, translation
 _FLIP = np.array([1.0, -1.0])
-_STEPS = 12
-_SETTLED = 1e-4
+_STEPS = 12  # of Gauss-Newton at most
+_SETTLED = 1e-4  # change of a weight in a step; what is smaller is not seen
 _PLAIN_STEPS = 2  # before errors are told from expressions
 
 
@@ -62,8 +63,8 @@ class LandmarkPose:
 def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: float) -> LandmarkPose:
     """The scaled orthographic pose and the weights in [0, 1] that explain landmarks best.
 
-    Gauss-Newton on ``|errors|^2 / noise^2 + |w|^2 / SPREAD^2 + 2 SPARSITY sum w`` over weights and pose together, each
-    step a quadratic problem with bounds. Errors that no expression explains lose influence (Geman and McClure).
+    Gauss-Newton on ``|errors|^2 / noise^2 + |w|^2 / _SPREAD^2 + 2 _SPARSITY sum w`` over weights and pose together,
+    each step a quadratic problem with bounds. Errors that no expression explains lose influence (Geman and McClure).
 
     Parameters
     ----------
@@ -84,11 +85,11 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
     shape = rig.neutral + np.tensordot(weights, rig.deltas, 1)
     pose = LandmarkPose(weights, *scaled_orthographic_pose(shape[there], pixels[there]))
     for step in range(_STEPS):
-        trust = there.astype(np.float64)
+        robust_weight = there.astype(np.float64)
         if step >= _PLAIN_STEPS:
             square = (np.nan_to_num(pose.errors(pixels, rig)) ** 2).sum(axis=1)
-            trust = there / (1 + square / max(OUTLIER, 3 * noise) ** 2) ** 2
-        after = _step(rig, pixels, pose, trust, noise)
+            robust_weight = there / (1 + square / max(_OUTLIER, 3 * noise) ** 2) ** 2
+        after = _step(rig, pixels, pose, robust_weight, noise)
         change = np.abs(after.weights - pose.weights).max()
         pose = after
         if change < _SETTLED and step >= _PLAIN_STEPS:
@@ -96,20 +97,20 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
     return pose
 
 
-def _step(rig: LandmarkRig, pixels: Floats, pose: LandmarkPose, trust: Floats, noise: float) -> LandmarkPose:
+def _step(rig: LandmarkRig, pixels: Floats, pose: LandmarkPose, robust_weight: Floats, noise: float) -> LandmarkPose:
     """To the minimum of the loss with the face linear in weights and pose; everything in widths of the face."""
     k = len(rig.names)
-    there = trust > 0
-    J = _jacobian(rig, pose)[there].reshape(-1, k + POSE)
+    there = robust_weight > 0
+    J = _jacobian(rig, pose)[there].reshape(-1, k + _POSE)
     e = pose.errors(pixels, rig)[there].ravel()
-    precision = np.repeat(trust[there], 2) / noise**2
+    precision = np.repeat(robust_weight[there], 2) / noise**2
     H = (J.T * precision) @ J
-    H[np.diag_indices(k)] += 1 / SPREAD**2
-    H[range(k, k + POSE), range(k, k + POSE)] += 1e-9 / noise**2
-    start = np.r_[pose.weights, np.zeros(POSE)]
+    H[np.diag_indices(k)] += 1 / _SPREAD**2
+    H[range(k, k + _POSE), range(k, k + _POSE)] += 1e-9 / noise**2
+    start = np.r_[pose.weights, np.zeros(_POSE)]
     g = J.T @ (precision * (e + J @ start))
-    g[:k] -= SPARSITY
-    low, high = np.r_[np.zeros(k), np.full(POSE, -np.inf)], np.r_[np.ones(k), np.full(POSE, np.inf)]
+    g[:k] -= _SPARSITY
+    low, high = np.r_[np.zeros(k), np.full(_POSE, -np.inf)], np.r_[np.ones(k), np.full(_POSE, np.inf)]
     x = bounded_quadratic(H, g, low, high, start)
     turn, growth, shift = x[k : k + 3], x[k + 3], x[k + 4 :]
     return LandmarkPose(
@@ -125,7 +126,7 @@ def _jacobian(rig: LandmarkRig, pose: LandmarkPose) -> Floats:
     k = len(rig.names)
     seen = (rig.neutral + np.tensordot(pose.weights, rig.deltas, 1)) @ pose.rotation.T / rig.width
     x, y, z = seen.T
-    J = np.zeros((68, 2, k + POSE))
+    J = np.zeros((68, 2, k + _POSE))
     J[:, :, :k] = np.einsum("ij,kpj->pik", pose.rotation[:2] / rig.width, rig.deltas)
     J[:, 0, k + 1], J[:, 0, k + 2] = z, -y  # a turn dw moves a point p by dw x p
     J[:, 1, k], J[:, 1, k + 2] = -z, x

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats
 
 __all__ = ["OneEuroFilter"]
-
-Floats = NDArray[np.float64]
 
 
 class OneEuroFilter:

@@ -10,19 +10,17 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.driving.take import Take
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 __all__ = ["read_live_link", "scheme_matrix"]
 
-Floats = NDArray[np.float64]
-
-TIMECODE, COUNT = "timecode", "blendshapecount"
-HEAD = ("HeadYaw", "HeadPitch", "HeadRoll")
-RATES = (24, 25, 30, 48, 50, 60)  # frames a second at which the app records
-USUAL_RATE = 60.0  # its default
+_TIMECODE, _COUNT = "timecode", "blendshapecount"
+_HEAD = ("HeadYaw", "HeadPitch", "HeadRoll")
+_RATES = (24, 25, 30, 48, 50, 60)  # frames a second at which the app records
+_USUAL_RATE = 60.0  # its default
 _TIME = re.compile(r"(\d+):(\d+):(\d+)[:;](\d+(?:\.\d+)?)")
 
 
@@ -51,7 +49,7 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None) ->
     values = _numbers(heading, lines, columns, path)
     weights = values @ scheme_matrix("live_link", [columns[i] for i in sorted(columns)])
     names = [columns[i] for i in sorted(columns)]
-    head = values[:, [names.index(name) for name in HEAD]] if set(HEAD) <= set(names) else None
+    head = values[:, [names.index(name) for name in _HEAD]] if set(_HEAD) <= set(names) else None
     return Take(_times(heading, lines, fps, path), weights, head)
 
 
@@ -86,7 +84,7 @@ def _columns(heading: list[str], path: str | os.PathLike[str]) -> dict[int, str]
     known = {name.lower(): name for name in SCHEMES["live_link"]}
     columns: dict[int, str] = {}
     for i, cell in enumerate(heading):
-        if cell.lower() in (TIMECODE, COUNT):
+        if cell.lower() in (_TIMECODE, _COUNT):
             continue
         name = known.get(cell.lower())
         if name is None:
@@ -106,7 +104,7 @@ def _columns(heading: list[str], path: str | os.PathLike[str]) -> dict[int, str]
 def _numbers(
     heading: list[str], lines: list[tuple[int, list[str]]], columns: dict[int, str], path: str | os.PathLike[str]
 ) -> Floats:
-    count = next((i for i, cell in enumerate(heading) if cell.lower() == COUNT), None)
+    count = next((i for i, cell in enumerate(heading) if cell.lower() == _COUNT), None)
     values = np.empty((len(lines), len(columns)))
     for frame, (line, row) in enumerate(lines):
         if count is not None and row[count].strip() not in {"52", "61", str(len(columns))}:
@@ -128,9 +126,9 @@ def _times(
 ) -> Floats:
     if fps is not None and not (np.isfinite(fps) and fps > 0):
         raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
-    column = next((i for i, cell in enumerate(heading) if cell.lower() == TIMECODE), None)
+    column = next((i for i, cell in enumerate(heading) if cell.lower() == _TIMECODE), None)
     if column is None:
-        return np.arange(len(lines)) / (fps or USUAL_RATE)
+        return np.arange(len(lines)) / (fps or _USUAL_RATE)
     parts = np.empty((len(lines), 4))
     for frame, (line, row) in enumerate(lines):
         match = _TIME.fullmatch(row[column].strip())
@@ -150,5 +148,5 @@ def _times(
 def _rate(seconds: Floats, frames: Floats) -> float:
     """The least usual rate that has room for all frames of a second, if the last frame of one was seen."""
     if np.ptp(seconds) == 0:
-        return USUAL_RATE
-    return float(next((rate for rate in RATES if rate > frames.max()), USUAL_RATE))
+        return _USUAL_RATE
+    return float(next((rate for rate in _RATES if rate > frames.max()), _USUAL_RATE))

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.model.expression_schemes import EXPRESSIONS
 
 __all__ = ["Take"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,6 +3,8 @@
 import cv2
 import numpy as np
 
+__all__ = ["compose_texture"]
+
 
 def compose_texture(texture: np.ndarray, colour: np.ndarray, attention: np.ndarray) -> np.ndarray:
     """``T* = A T + (1 - A) C`` (Chen et al. 2020, Eq. 12).

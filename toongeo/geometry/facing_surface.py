@@ -7,18 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from toongeo.arrays import Floats, Integers
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 
 __all__ = ["FacingSurface", "barycentric"]
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-
-NEAREST = 2  # vertices whose triangles are candidates, besides the closest triangle of all
-AROUND = 8  # triangles considered of each; a vertex with more is rare and has small ones
-NORMAL_REACH = 0.08  # of the mesh's size: how much distance a reversed normal outweighs, in the choice of candidates
+_NEAREST = 2  # vertices whose triangles are candidates, besides the closest triangle of all
+_AROUND = 8  # triangles considered of each; a vertex with more is rare and has small ones
+_NORMAL_REACH = 0.08  # of the mesh's size: how much distance a reversed normal outweighs, in the choice of candidates
 FACING = 0.5  # least cosine between the normals of a point and of its partner
-ON_EDGE = 1e-6  # a barycentric coordinate below this lies on the opposite edge
+_ON_EDGE = 1e-6  # a barycentric coordinate below this lies on the opposite edge
 
 
 class FacingSurface:
@@ -35,7 +33,7 @@ class FacingSurface:
         self.triangle_normals /= np.where(length > 0, length, 1.0)
         self.normals = vertex_normals(V, F)
         used = np.unique(F)
-        self.reach = NORMAL_REACH * float(np.linalg.norm(np.ptp(V[used], axis=0)))
+        self.reach = _NORMAL_REACH * float(np.linalg.norm(np.ptp(V[used], axis=0)))
         self._used = used
         self._tree = cKDTree(np.hstack([V[used], self.reach * self.normals[used]]))
         self._around = _triangles_around(F, len(V))
@@ -59,7 +57,7 @@ class FacingSurface:
 
     def _facing(self, P: Floats, N: Floats) -> tuple[Integers, Floats, Floats]:
         """As `closest`, by position and normal together: this proposes vertices, then true distances decide."""
-        near = self._tree.query(np.hstack([P, self.reach * N]), NEAREST)[1].reshape(len(P), -1)
+        near = self._tree.query(np.hstack([P, self.reach * N]), _NEAREST)[1].reshape(len(P), -1)
         candidates = self._around[self._used[near]].reshape(len(P), -1)
         rows, columns = np.nonzero(candidates >= 0)
         triangles = candidates[rows, columns]
@@ -87,17 +85,17 @@ class FacingSurface:
 
     def at_border(self, triangles: Integers, bary: Floats) -> NDArray[np.bool_]:
         """Whether points (p,) lie on an edge where the mesh ends: what seeks them lies beyond it, mostly."""
-        return np.asarray(((bary <= ON_EDGE) & self._open[triangles]).any(1))
+        return np.asarray(((bary <= _ON_EDGE) & self._open[triangles]).any(1))
 
 
 def _triangles_around(F: Integers, n: int) -> Integers:
-    """Up to AROUND triangles (n, AROUND) at every vertex, filled up with -1."""
+    """Up to _AROUND triangles (n, _AROUND) at every vertex, filled up with -1."""
     corner = F.ravel()
     order = np.argsort(corner, kind="stable")
     start = np.searchsorted(corner[order], np.arange(n))
     rank = np.arange(len(order)) - start[corner[order]]
-    around = np.full((n, AROUND), -1)
-    kept = rank < AROUND
+    around = np.full((n, _AROUND), -1)
+    kept = rank < _AROUND
     around[corner[order][kept], rank[kept]] = order[kept] // 3
     return around
 

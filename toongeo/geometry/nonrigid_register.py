@@ -9,21 +9,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.geometry.facing_surface import FACING, FacingSurface
 from toongeo.geometry.landmark_matrix import landmark_matrix
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.geometry.registration.thin_shell import ThinShell
 from toongeo.geometry.rotations.similarity import similarity
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
 
 __all__ = ["RegisteredMesh", "nonrigid_register"]
 
-Floats = NDArray[np.float64]
-
-STIFFNESS = (0.3, 0.03, 0.003, 0.0003)
-ITERATIONS = 4
-MATCHED = 0.1  # units: a partner farther away in the end is none
-CONVERGED = 1e-3  # units: mean step of the last iteration
+_STIFFNESS = (0.3, 0.03, 0.003, 0.0003)  # from a plate that hardly bends to one that follows; a decade a stage
+_ITERATIONS = 4  # of closest points a stage
+_MATCHED = 0.1  # units: a partner farther away in the end is none
+_CONVERGED = 1e-3  # units: mean step of the last iteration
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,17 +70,17 @@ class RegisteredMesh:
 
 
 def nonrigid_register(
-    V_source: ArrayLike,
-    F_source: ArrayLike,
-    V_target: ArrayLike,
-    F_target: ArrayLike,
+    V_source: MeshLike,
+    F_source: ArrayLike | None,
+    V_target: MeshLike,
+    F_target: ArrayLike | None,
     source_landmarks: ArrayLike,
     target_landmarks: ArrayLike,
     *,
     fitted: ArrayLike | None = None,
     landmark_weight: ArrayLike = 1.0,
-    stiffness: Sequence[float] = STIFFNESS,
-    iterations: int = ITERATIONS,
+    stiffness: Sequence[float] = _STIFFNESS,
+    iterations: int = _ITERATIONS,
 ) -> RegisteredMesh:
     """Deform a mesh onto another one by landmarks and regularized non-rigid closest points.
 
@@ -92,11 +91,11 @@ def nonrigid_register(
 
     Parameters
     ----------
-    V_source : (n, 3) float
-    F_source : (m, 3) int
-    V_target : (p, 3) float
+    V_source : (n, 3) float, or trimesh.Trimesh
+    F_source : (m, 3) int, or None with a Trimesh
+    V_target : (p, 3) float, or trimesh.Trimesh
         Any unit, any pose.
-    F_target : (q, 3) int
+    F_target : (q, 3) int, or None with a Trimesh
         Any topology, oriented like the source's.
     source_landmarks, target_landmarks : (k,) int or (k, 3) float
         Vertices, or points on or near the surface; row i of one belongs to row i of the other. A row with NaN is
@@ -155,7 +154,7 @@ def nonrigid_register(
     X, step = shell.laid_on(surface, (points - shift) @ rotation / (scale * unit), mask, levels, iterations)
     triangles, bary, cosines = surface.closest(X, vertex_normals(X, corners))
     distances = np.linalg.norm(surface.points(triangles, bary) - X, axis=1)
-    matched = (cosines >= FACING) & ~surface.at_border(triangles, bary) & (distances <= MATCHED)
+    matched = (cosines >= FACING) & ~surface.at_border(triangles, bary) & (distances <= _MATCHED)
     if mask.any() and not matched[mask].any():
         raise ValueError(
             "V_target: expected a surface on which the source can be laid, with triangles oriented like the source's, "
@@ -175,7 +174,7 @@ def nonrigid_register(
         rotation=rotation,
         shift=shift,
         iterations=len(levels) * iterations,
-        status="converged" if step <= CONVERGED else "iteration limit",
+        status="converged" if step <= _CONVERGED else "iteration limit",
     )
 
 

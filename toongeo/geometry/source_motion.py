@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from toongeo.geometry.deformation.transfer_operators import fourth_edges
 
+__all__ = ["SourceMotion", "source_motion"]
+
 
 @dataclass(frozen=True, eq=False)
 class SourceMotion:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from toongeo.colour.srgb import linear_to_srgb
 from toongeo.io.readers.read_glb import GlbDocument
 from toongeo.io.scene import METRES, Scene, SceneAnimation, SceneMesh
 
@@ -71,7 +72,7 @@ def _mesh(document: GlbDocument, node: dict[str, Any], textures: dict[int, NDArr
         # Integers do not quite give unit length.
         normals=normals if normals.dtype == np.float32 else normals / np.linalg.norm(normals, axis=1, keepdims=True),
         texture=_texture(document, material, textures),
-        color=tuple(np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)),
+        color=tuple(linear_to_srgb(linear)),
         roughness=material["roughnessFactor"],
         targets=np.stack(targets).astype(np.float64) * millimetres if targets else None,
         target_names=tuple(mesh.get("extras", {}).get("targetNames", ())),

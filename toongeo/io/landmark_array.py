@@ -5,6 +5,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo.io.point_array import point_array
 
+__all__ = ["landmark_array"]
+
 # Landmark schemes in use, by their number of points: what people pass by mistake.
 _SCHEMES = {
     5: "eye centres, nose and mouth corners",

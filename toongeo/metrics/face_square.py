@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["face_square"]
 
-MARGIN = 1.7  # side of the square / greater side of the landmarks' bounding box
-RAISED = 0.12  # of the side: the landmarks leave out the forehead
+_MARGIN = 1.7  # side of the square / greater side of the landmarks' bounding box
+_RAISED = 0.12  # of the side: the landmarks leave out the forehead
 
 
 def face_square(landmarks: ArrayLike) -> tuple[NDArray[np.float64], float]:
@@ -40,5 +40,5 @@ def face_square(landmarks: ArrayLike) -> tuple[NDArray[np.float64], float]:
     extent = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
     if not extent > 0:
         raise ValueError("landmarks: expected points that span a face, got them all missing or in one place")
-    side = MARGIN * extent
-    return (points.min(axis=0) + points.max(axis=0)) / 2 - side / 2 - [0.0, RAISED * side], side
+    side = _MARGIN * extent
+    return (points.min(axis=0) + points.max(axis=0)) / 2 - side / 2 - [0.0, _RAISED * side], side

@@ -11,6 +11,8 @@ from toongeo.model.data_path import data_path
 from toongeo.model.eyeball_template import EyeballTemplate
 from toongeo.model.morphable_model import MorphableModel
 
+__all__ = ["artist_model"]
+
 
 def artist_model(axes: np.ndarray | None = None) -> MorphableModel:
     """The default template without its prior: an artist's choice of 80 identity modes, and of how far faces differ.

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+__all__ = ["data_path"]
+
 _PACKAGE = Path(__file__).resolve().parents[1]
 
 

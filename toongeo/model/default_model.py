@@ -10,6 +10,8 @@ from toongeo.model.data_path import data_path
 from toongeo.model.face_prior import FacePrior
 from toongeo.model.morphable_model import MorphableModel
 
+__all__ = ["default_model"]
+
 
 @cache
 def default_model() -> MorphableModel:

@@ -18,7 +18,7 @@ from toongeo.model.data_path import data_path
 
 __all__ = ["EXPRESSIONS", "GAZE", "PRESETS", "SCHEMES"]
 
-Weights = Mapping[str, float]
+_Weights = Mapping[str, float]
 GAZE = tuple(f"eyeLook{direction}{side}" for side in ("Left", "Right") for direction in ("In", "Out", "Up", "Down"))
 
 
@@ -50,11 +50,11 @@ _ROWS, _PRESETS = _rows("expression_schemes.csv"), _rows("presets.csv")
 _DEFINED = {row["name"]: _parts(row["weights"]) for row in reversed(_PRESETS + _ROWS)}
 
 
-def _frozen(rows: list[dict[str, str]]) -> Mapping[str, Weights]:
+def _frozen(rows: list[dict[str, str]]) -> Mapping[str, _Weights]:
     return MappingProxyType({row["name"]: MappingProxyType(_resolved(row["name"], 1.0)) for row in rows})
 
 
-SCHEMES: Mapping[str, Mapping[str, Weights]] = MappingProxyType(
+SCHEMES: Mapping[str, Mapping[str, _Weights]] = MappingProxyType(
     {
         scheme: _frozen([row for row in _ROWS if row["scheme"] == scheme])
         for scheme in dict.fromkeys(row["scheme"] for row in _ROWS)

@@ -10,7 +10,7 @@ from toongeo.model.expression_schemes import EXPRESSIONS, PRESETS, SCHEMES
 
 __all__ = ["expression_weights", "preset"]
 
-OWN = {name: {name: 1.0} for name in EXPRESSIONS}
+_OWN = {name: {name: 1.0} for name in EXPRESSIONS}
 
 
 def expression_weights(weights: Mapping[str, float], scheme: str | None = None) -> dict[str, float]:
@@ -95,7 +95,7 @@ def _known(scheme: str | None) -> Mapping[str, Mapping[str, float]]:
     schemes = {**SCHEMES, "preset": PRESETS}
     if scheme is None:
         every: dict[str, Mapping[str, float]] = {}
-        for names in (*schemes.values(), OWN):
+        for names in (*schemes.values(), _OWN):
             every.update(names)
         return every
     if scheme not in schemes:

@@ -6,6 +6,8 @@ import numpy as np
 
 from toongeo._read_only import read_only
 
+__all__ = ["EyeballTemplate"]
+
 
 @dataclass(frozen=True, eq=False)
 class EyeballTemplate:

@@ -8,11 +8,13 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.render.raster.opencv_nearest import opencv_nearest
+from toongeo.render.raster.z_buffer import z_buffer
+
 __all__ = ["Fragments", "rasterize"]
 
 _MAX_FACES = 2**24  # ids travel as float32 colours, exact up to here
 _MAX_REACH = 2.0**20  # px; beyond this the float32 edge functions of OpenCV lose the pixel grid
-_NEAREST, _FARTHEST = 0.99, 0.01  # depths in OpenCV's buffer, within (0, 1)
 _ROUNDING = 2.5e-7  # of the image's side: what the float32 projection may move a point by
 _MAX_GROWTH = 0.002  # of a face's own size, for slivers
 _MARGIN = 1e-3  # px, above what a face may grow by
@@ -54,10 +56,11 @@ class Fragments:
 def rasterize(points_px: ArrayLike, F: ArrayLike, height: int, width: int, *, cull_back: bool = False) -> Fragments:
     """Nearest face and barycentric coordinates at every pixel centre.
 
-    Coverage and the z-buffer are those of OpenCV's software rasterizer (float32; a pixel centre within
-    about 1e-4 px of an edge may fall on either side), barycentrics are computed in float64 from the points
-    themselves. Triangles may lie partly or wholly outside the image; those without area are skipped.
-    Pixel centres are integers. An atlas is rasterized by the same function: `uv_to_px` gives its points.
+    Coverage and the z-buffer are those of OpenCV 5's software rasterizer (float32; a pixel centre within
+    about 1e-4 px of an edge may fall on either side), or slower ones of our own where OpenCV has none; barycentrics
+    are computed in float64 from the points themselves. Triangles may lie partly or wholly outside the image; those
+    without area are skipped. Pixel centres are integers. An atlas is rasterized by the same function: `uv_to_px`
+    gives its points.
 
     Parameters
     ----------
@@ -96,7 +99,11 @@ def rasterize(points_px: ArrayLike, F: ArrayLike, height: int, width: int, *, cu
     affine, twice_area = _affine_weights(points, faces[drawn])
     kept = np.flatnonzero(twice_area < 0.0 if cull_back else twice_area)
     drawn, affine = drawn[kept], affine[kept]
-    rows = _nearest(points, faces[drawn], _growth(affine, height, width), height, width)
+    growth = _growth(affine, height, width)
+    if hasattr(cv2, "triangleRasterizeColor"):  # OpenCV 5, unless built without it
+        rows = opencv_nearest(points, faces[drawn], growth, height, width)
+    else:
+        rows = z_buffer(points, faces[drawn], affine, growth, height, width)
     barycentrics = _barycentrics(affine, rows)
     face_ids = np.append(drawn, -1).astype(np.int32)[rows]  # row -1 is the last one
     return Fragments(face_ids, barycentrics)
@@ -170,53 +177,6 @@ def _growth(affine: NDArray[np.float64], height: int, width: int) -> NDArray[np.
     steepest = np.maximum(steepest, np.abs(gx1 + gx2) + np.abs(gy1 + gy2))
     distance = 3.0 * _ROUNDING * max(height, width)  # the centroid has the weights 1/3
     return np.minimum(distance * steepest, _MAX_GROWTH).astype(np.float32)
-
-
-def _nearest(
-    points: NDArray[np.float64],
-    faces: NDArray[np.int64],
-    growth: NDArray[np.float32],
-    height: int,
-    width: int,
-) -> NDArray[np.int32]:
-    """Row of the nearest face at each pixel: FLAT shading gives a face the colour of its first vertex.
-
-    OpenCV knows only a perspective camera. At fovY = pi/2, near 1, far 2, a point at the distance
-    d = 2 / (2 - t) gets the buffer depth t, so X = x_ndc d w/h, Y = y_ndc d, Z = -d undoes the perspective
-    and keeps the depth linear. Its pixel centres are at +0.5.
-    """
-    colours = np.full((height, width, 3), -1.0, np.float32)
-    if len(faces) == 0:
-        return colours[:, :, 0].astype(np.int32)
-    depth = points[:, 2]
-    lowest, highest = depth[faces].min(), depth[faces].max()
-    if highest > lowest:
-        nearness = (depth - lowest) * ((_NEAREST - _FARTHEST) / (highest - lowest))
-        d = 2.0 / (2.0 - _NEAREST + nearness)
-    else:
-        d = np.ones(len(points))  # divides without rounding
-    space = np.empty((len(points), 3), np.float32)
-    space[:, 0] = ((points[:, 0] + 0.5) * (2.0 / width) - 1.0) * d * (width / height)
-    space[:, 1] = (1.0 - (points[:, 1] + 0.5) * (2.0 / height)) * d
-    space[:, 2] = -d
-    corners = space.take(faces, axis=0)
-    middle = (corners[:, 0] + corners[:, 1] + corners[:, 2]) / np.float32(3.0)
-    corners += (corners - middle[:, None]) * growth[:, None, None]
-    settings = cv2.TriangleRasterizeSettings()
-    settings.setShadingType(cv2.RASTERIZE_SHADING_FLAT)
-    settings.setCullingMode(cv2.RASTERIZE_CULLING_NONE)
-    cv2.triangleRasterizeColor(
-        corners.reshape(-1, 3),
-        np.arange(corners.size // 3, dtype=np.int32).reshape(-1, 3),
-        np.repeat(np.arange(len(faces), dtype=np.float32), 9).reshape(-1, 3),
-        colours,
-        np.eye(4),
-        np.pi / 2.0,
-        1.0,
-        2.0,
-        settings,
-    )
-    return colours[:, :, 0].astype(np.int32)
 
 
 def _barycentrics(affine: NDArray[np.float64], rows: NDArray[np.int32]) -> NDArray[np.float32]:

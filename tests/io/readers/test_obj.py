@@ -10,7 +10,7 @@ from toongeo.io import Scene, SceneMesh, read_image, read_obj, write_obj
 def test_round_trip(tmp_path, scene):
     path = tmp_path / "Gesicht ü.obj"
     write_obj(path, scene)
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["Gesicht ü.mtl", "Gesicht ü.obj", "Gesicht ü.png"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["Gesicht ü.mtl", "Gesicht ü.obj", "Gesicht ü_texture.png"]
     got = read_obj(path)
     np.testing.assert_array_equal(got.vertices, np.concatenate([mesh.vertices for mesh in scene.meshes]))
     np.testing.assert_array_equal(got.uv, np.concatenate([m.uv for m in scene.meshes if m.uv is not None]))
@@ -22,12 +22,12 @@ def test_round_trip(tmp_path, scene):
         np.testing.assert_array_equal(got.uv_faces[own], -1 if mesh.uv is None else mesh.uv_faces + uv)
         vertex += len(mesh.vertices)
         uv += 0 if mesh.uv is None else len(mesh.uv)
-    np.testing.assert_array_equal(read_image(tmp_path / "Gesicht ü.png"), scene.meshes[0].texture)
+    np.testing.assert_array_equal(read_image(tmp_path / "Gesicht ü_texture.png"), scene.meshes[0].texture)
 
 
 def test_a_name_cannot_write_lines_of_its_own(tmp_path, scene):
     write_obj(tmp_path / "a\nv 0 0 0\u2028.obj", scene)
-    assert {p.name for p in tmp_path.iterdir()} == {"a\nv 0 0 0\u2028.obj", "a_v 0 0 0_.mtl", "a_v 0 0 0_.png"}
+    assert {p.name for p in tmp_path.iterdir()} == {"a\nv 0 0 0\u2028.obj", "a_v 0 0 0_.mtl", "a_v 0 0 0__texture.png"}
     assert "mtllib a_v 0 0 0_.mtl" in (tmp_path / "a\nv 0 0 0\u2028.obj").read_text().split("\n")
     got = read_obj(tmp_path / "a\nv 0 0 0\u2028.obj")
     assert len(got.vertices) == sum(len(mesh.vertices) for mesh in scene.meshes)
@@ -44,9 +44,9 @@ def test_material_library(tmp_path, scene):
     write_obj(tmp_path / "a.obj", Scene(meshes))
     mtl = (tmp_path / "a.mtl").read_text().splitlines()
     assert [line for line in mtl if line.startswith("map_Kd")] == [
-        "map_Kd a.png",
-        "map_Kd a.png",
-        "map_Kd a_1.png",
+        "map_Kd a_texture.png",
+        "map_Kd a_texture.png",
+        "map_Kd a_texture_1.png",
     ]
     obj = (tmp_path / "a.obj").read_text().splitlines()
     assert "mtllib a.mtl" in obj and "o my_mesh" in obj
@@ -90,6 +90,43 @@ def test_forms_of_faces(tmp_path):
     np.testing.assert_array_equal(polygon, [0, 1, 1, 2, 3, 3, 3])
 
 
+def test_any_mixture_of_forms_is_read_as_written(tmp_path, rng):
+    lines, faces, uv_faces, owners, objects = [], [], [], [], []
+    n = t = 0
+    vertices, uv = rng.normal(size=(400, 3)), rng.random((300, 2))
+    while n < 400 or t < 300:
+        kind = rng.choice(["v", "vt", "f", "o", "#"])
+        if kind == "v" and n < 400:
+            lines.append("v " + " ".join(map(repr, vertices[n].tolist())) + ["", " 0.5 0.5 0.5", " # a dot"][n % 3])
+            n += 1
+        elif kind == "vt" and t < 300:
+            lines.append("vt\t" + " ".join(map(repr, uv[t].tolist())) + " 0" * (t % 2))
+            t += 1
+        elif kind == "o":
+            objects = objects or ([""] if faces else [])
+            objects.append(f"part {len(objects)}")
+            lines.append(("g " if n % 2 else " o  ") + objects[-1])
+        elif kind == "f" and n and t:
+            corners = [(int(rng.integers(n)), int(rng.integers(t)), rng.integers(6)) for _ in range(rng.integers(3, 7))]
+            forms = ["{0}/{2}", "{1}/{3}/1", "{0}//1", "{1}", "{0}/", "{0}/{3}"]
+            words = [forms[form].format(i + 1, i - n, j + 1, j - t) for i, j, form in corners]
+            lines.append("f " + " ".join(words))
+            faces.append([i for i, _, _ in corners])
+            uv_faces.append([j if form in (0, 1, 5) else -1 for _, j, form in corners])
+            owners.append(max(len(objects) - 1, 0))
+        else:
+            lines.append("# f 1 2")
+    (tmp_path / "a.obj").write_text("\n".join(lines))
+    got = read_obj(tmp_path / "a.obj")
+    np.testing.assert_array_equal(got.vertices, vertices)
+    np.testing.assert_array_equal(got.uv, uv)
+    width = max(map(len, faces))
+    np.testing.assert_array_equal(got.faces, [face + [-1] * (width - len(face)) for face in faces])
+    np.testing.assert_array_equal(got.uv_faces, [face + [-1] * (width - len(face)) for face in uv_faces])
+    assert got.objects == tuple(objects)
+    np.testing.assert_array_equal(got.face_object, owners)
+
+
 def test_fans_keep_the_area_of_convex_polygons(tmp_path, rng):
     lines, area = [], 0.0
     for corners in (3, 4, 5, 8):
@@ -118,6 +155,14 @@ def test_fans_keep_the_area_of_convex_polygons(tmp_path, rng):
         ("v 0 0 0\nf 1 1 -2", "line 2 .*index -2 is out of range"),
         ("v 0 0 0\nf 1/1 1/1 1/1", "line 2 .*index 1 is out of range, 0 elements"),
         ("v 0 0 0\nf a b c", "line 2 .*invalid literal"),
+        ("v 0 0 0\nvt 0 0\nf 1 1 1\nf 1/1 1/1 1/x", "line 4 .*invalid literal.* 'x'"),
+        ("v 0 0 0\nf 1 1 1\nf 1 1 1\nf 1 1 7", "line 4 .*index 7 is out of range, 1 elements so far"),
+        ("v 0 0 0\nf 1 1 2\nv 0 0 0", "line 2 .*index 2 is out of range, 1 elements so far"),
+        ("v 0 0 0\nf 1 1 " + 30 * "9", "line 2 .*index 9+ is out of range, 1 elements so far"),
+        ("v 0 0 0\nf 1 1 " + 400 * "9", "line 2 .*int too large"),
+        ("v 0 0 0\nvt 0 0\nf 1 1 1\nf 1/1 /1 1/1", "line 4 .*invalid literal"),
+        ("v 0 0 0\nv 1 1 inf\nf 1 1 1", "line 2 .*expected 3 finite"),
+        ("", "expected an OBJ with faces, got none in .*a.obj"),
         ("v 0 0 0\n", "expected an OBJ with faces, got none in .*a.obj"),
     ],
 )
@@ -132,7 +177,7 @@ def test_places(tmp_path, scene):
         read_obj(tmp_path / "none.obj")
     with pytest.raises(ValueError, match=r"path: expected a name that ends in \.obj, got .*a\.txt"):
         write_obj(tmp_path / "a.txt", scene)
-    (tmp_path / "a.png").mkdir()
-    with pytest.raises(OSError, match=r"cannot write .*a\.png: "):
+    (tmp_path / "a_texture.png").mkdir()
+    with pytest.raises(OSError, match=r"cannot write .*a_texture\.png: "):
         write_obj(tmp_path / "a.obj", scene)
-    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a_texture.png"]

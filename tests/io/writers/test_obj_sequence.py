@@ -20,7 +20,7 @@ def test_every_target_is_a_file_of_the_same_faces(tmp_path, scene):
     np.testing.assert_array_equal(jaw.uv_faces, neutral.uv_faces)
     moved = np.vstack([m.moved({"jawOpen": 1.0}) for m in scene.meshes])
     np.testing.assert_allclose(jaw.vertices, moved, atol=1e-5)
-    np.testing.assert_array_equal(read_image(tmp_path / "out" / "x-1.png"), scene.meshes[0].texture)
+    np.testing.assert_array_equal(read_image(tmp_path / "out" / "x-1_texture.png"), scene.meshes[0].texture)
 
 
 def test_a_second_time_replaces_the_files(tmp_path, scene):

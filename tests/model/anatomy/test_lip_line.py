@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from toongeo.geometry import adjacency
-from toongeo.model.anatomy.lip_line import along, interpolated, lip_line
+from toongeo.geometry.polyline import arc_shares, interpolated
+from toongeo.model.anatomy.lip_line import lip_line
 
 
 @pytest.fixture(scope="module")
@@ -56,5 +57,5 @@ def test_the_spread_of_a_symmetric_shift_is_symmetric(model, line):
 
 def test_lengths_along_a_path_are_shares_of_the_whole():
     path = np.array([[0.0, 0, 0], [3, 0, 0], [3, 1, 0]])
-    np.testing.assert_allclose(along(path), [0, 0.75, 1])
-    np.testing.assert_allclose(interpolated(np.array([0.5, 0.875]), along(path), path), [[2, 0, 0], [3, 0.5, 0]])
+    np.testing.assert_allclose(arc_shares(path), [0, 0.75, 1])
+    np.testing.assert_allclose(interpolated(np.array([0.5, 0.875]), arc_shares(path), path), [[2, 0, 0], [3, 0.5, 0]])

@@ -10,13 +10,13 @@ from toongeo.app.bench.bench_table import BenchTable
 
 __all__ = ["bar_chart"]
 
-INK, GRID, PAPER = (40, 40, 40), (222, 222, 222), 255
+INK, GRID, _PAPER = (40, 40, 40), (222, 222, 222), 255
 # Colours that differ in brightness too, for those who do not tell them by hue.
 COLOURS = ((170, 170, 170), (95, 95, 95), (86, 180, 233), (230, 159, 0), (204, 121, 167), (0, 114, 78))
-BAR, GAP, NARROWEST = 22, 26, 84  # px: a bar, between groups, a group with its name
-HEIGHT, TOP, BOTTOM, LEFT, BETWEEN = 320, 88, 46, 64, 84
-TICKS = 5
-FONT, SIZE = cv2.FONT_HERSHEY_SIMPLEX, 0.45
+_BAR, _GAP, _NARROWEST = 22, 26, 84  # px: a bar, between groups, a group with its name
+_HEIGHT, _TOP, _BOTTOM, _LEFT, _BETWEEN = 320, 88, 46, 64, 84
+_TICKS = 5
+_FONT, _SIZE = cv2.FONT_HERSHEY_SIMPLEX, 0.45
 
 
 def bar_chart(table: BenchTable) -> NDArray[np.uint8]:
@@ -27,23 +27,23 @@ def bar_chart(table: BenchTable) -> NDArray[np.uint8]:
     (H, W, 3) uint8 RGB
     """
     methods = list(table.values)
-    group = max(len(methods) * BAR + GAP, NARROWEST)
+    group = max(len(methods) * _BAR + _GAP, _NARROWEST)
     widths = [max(len(columns) * group, _text_width(unit)) for unit, columns in table.panels.items()]
-    legend = LEFT + sum(_text_width(f"{method}    ") + BAR for method in methods)
-    bars = LEFT + sum(widths) + BETWEEN * (len(widths) - 1) + GAP
-    width = max(bars, legend, LEFT + _text_width(table.title) + GAP)
-    canvas = np.full((TOP + HEIGHT + BOTTOM, width, 3), PAPER, np.uint8)
-    _write(canvas, table.title, LEFT, 22)
-    x = LEFT
+    legend = _LEFT + sum(_text_width(f"{method}    ") + _BAR for method in methods)
+    bars = _LEFT + sum(widths) + _BETWEEN * (len(widths) - 1) + _GAP
+    width = max(bars, legend, _LEFT + _text_width(table.title) + _GAP)
+    canvas = np.full((_TOP + _HEIGHT + _BOTTOM, width, 3), _PAPER, np.uint8)
+    _write(canvas, table.title, _LEFT, 22)
+    x = _LEFT
     for method, colour in zip(methods, _colours(len(methods)), strict=True):
         cv2.rectangle(canvas, (x, 34), (x + 14, 46), colour, -1)
         _write(canvas, method, x + 20, 45)
-        x += _text_width(f"{method}    ") + BAR
-    left, first = LEFT, 0
+        x += _text_width(f"{method}    ") + _BAR
+    left, first = _LEFT, 0
     for (unit, columns), wide in zip(table.panels.items(), widths, strict=True):
         which = slice(first, first + len(columns))
         _panel(canvas, table, unit, columns, which, (left, wide, group))
-        left, first = left + wide + BETWEEN, first + len(columns)
+        left, first = left + wide + _BETWEEN, first + len(columns)
     return canvas
 
 
@@ -58,10 +58,10 @@ def _panel(
     left, wide, group = place
     means = np.array([table.mean(method)[which] for method in table.values])
     spreads = np.nan_to_num([table.deviation(method)[which] for method in table.values])
-    step = _round_step(float(np.nanmax(means + spreads, initial=0.0)) / TICKS)
-    base, px = TOP + HEIGHT, HEIGHT / (step * TICKS)
-    _write(canvas, unit, left, TOP - 14)
-    for k in range(TICKS + 1):
+    step = _round_step(float(np.nanmax(means + spreads, initial=0.0)) / _TICKS)
+    base, px = _TOP + _HEIGHT, _HEIGHT / (step * _TICKS)
+    _write(canvas, unit, left, _TOP - 14)
+    for k in range(_TICKS + 1):
         y, label = round(base - k * step * px), f"{k * step:.4g}"
         cv2.line(canvas, (left, y), (left + wide, y), INK if k == 0 else GRID, 1)
         _write(canvas, label, left - 8 - _text_width(label), y + 5)
@@ -70,13 +70,13 @@ def _panel(
         _write(canvas, column, middle - _text_width(column) // 2, base + 22)
         for i, colour in enumerate(_colours(len(means))):
             if np.isfinite(means[i, k]):
-                x = middle - len(means) * BAR // 2 + i * BAR
+                x = middle - len(means) * _BAR // 2 + i * _BAR
                 _bar(canvas, x, base, means[i, k] * px, spreads[i, k] * px, colour)
 
 
 def _bar(canvas: NDArray[np.uint8], x: int, base: int, mean: float, spread: float, colour: tuple[int, ...]) -> None:
-    cv2.rectangle(canvas, (x + 2, round(base - mean)), (x + BAR - 3, base), colour, -1)
-    low, high, middle = round(base - max(mean - spread, 0)), round(base - mean - spread), x + BAR // 2 - 1
+    cv2.rectangle(canvas, (x + 2, round(base - mean)), (x + _BAR - 3, base), colour, -1)
+    low, high, middle = round(base - max(mean - spread, 0)), round(base - mean - spread), x + _BAR // 2 - 1
     if spread > 0:
         cv2.line(canvas, (middle, low), (middle, high), INK, 1)
         cv2.line(canvas, (middle - 3, high), (middle + 3, high), INK, 1)
@@ -99,8 +99,8 @@ def _round_step(least: float) -> float:
 
 
 def _text_width(text: str) -> int:
-    return int(cv2.getTextSize(text, FONT, SIZE, 1)[0][0])
+    return int(cv2.getTextSize(text, _FONT, _SIZE, 1)[0][0])
 
 
 def _write(canvas: NDArray[np.uint8], text: str, x: int, y: int) -> None:
-    cv2.putText(canvas, text, (x, y), FONT, SIZE, INK, 1, cv2.LINE_AA)
+    cv2.putText(canvas, text, (x, y), _FONT, _SIZE, INK, 1, cv2.LINE_AA)

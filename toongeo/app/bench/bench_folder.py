@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from toongeo.io import read_image, read_landmarks
 
-__all__ = ["BenchPicture", "bench_folder"]
+__all__ = ["PICTURES", "BenchPicture", "bench_folder"]
 
 PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
-LANDMARKS = (".pts", ".txt", ".csv", ".npy")
+_LANDMARKS = (".pts", ".txt", ".csv", ".npy")
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ def bench_folder(folder: Path) -> list[BenchPicture]:
                 f"got {stems[picture.stem].name} and {picture.name} in {folder}"
             )
         stems[picture.stem] = picture
-        beside = [path for path in (picture.with_suffix(suffix) for suffix in LANDMARKS) if path.is_file()]
+        beside = [path for path in (picture.with_suffix(suffix) for suffix in _LANDMARKS) if path.is_file()]
         if not beside:
             raise ValueError(
-                f"folder: expected landmarks ({', '.join(LANDMARKS)}) beside each picture, "
+                f"folder: expected landmarks ({', '.join(_LANDMARKS)}) beside each picture, "
                 f"got none for {picture.name} in {folder}"
             )
         found.append(BenchPicture(picture, beside[0]))

@@ -10,6 +10,7 @@ import igl
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.caricature import BilinearModel, LinearFit, bilinear_fit, caricatured_modes, linear_fit
 from toongeo.caricature.fit_caricature import fit_caricature
 from toongeo.model.anatomy.parts import TEETH_AND_TONGUE
@@ -19,9 +20,8 @@ from toongeo.protocols import HeadCamera
 
 __all__ = ["FoundFace", "arap_fit", "caricature_methods"]
 
-Floats = NDArray[np.float64]
-REGULARIZATION = 3000.0  # Eq. 17
-ROUNDS = 20  # of ARAP
+_REGULARIZATION = 3000.0  # Eq. 17
+_ROUNDS = 20  # of ARAP
 
 
 class FoundFace(Protocol):
@@ -46,10 +46,10 @@ def caricature_methods(model: MorphableModel) -> Mapping[str, Callable[[Floats],
     mean, caricatured = caricatured_modes(model, np.random.default_rng(0))
     bilinear = BilinearModel.from_model(model, np.random.default_rng(0))
     plain: dict[str, Callable[[Floats], FoundFace]] = {
-        "3DMM": lambda q: linear_fit(q, model, model.mean, linear, REGULARIZATION),
+        "3DMM": lambda q: linear_fit(q, model, model.mean, linear, _REGULARIZATION),
         "3DMM(-)": lambda q: linear_fit(q, model, model.mean, linear, 0.0),
         "bilinear": lambda q: bilinear_fit(q, model, bilinear),
-        "caricatured 3DMM": lambda q: linear_fit(q, model, mean, caricatured, REGULARIZATION),
+        "caricatured 3DMM": lambda q: linear_fit(q, model, mean, caricatured, _REGULARIZATION),
         "fit_3dmm": lambda q: fit_3dmm(None, q, model=model),
     }
     bent = {f"{name} + ARAP": partial(_bent, fit, model) for name, fit in plain.items() if name != "3DMM(-)"}
@@ -73,7 +73,7 @@ def arap_fit(face: FoundFace, model: MorphableModel, landmarks: Floats) -> Linea
     anchors, first = np.unique(face.landmark_vertices[seen], return_index=True)
     targets = face.camera.unproject(landmarks[seen][first], face.camera.depth(face.vertices[anchors]))
     data = igl.ARAPData()
-    data.max_iter = ROUNDS
+    data.max_iter = _ROUNDS
     V = face.vertices[kept]
     igl.arap_precomputation(V, F, 3, np.searchsorted(kept, anchors).astype(np.int32), data)
     deformed = face.vertices.copy()

@@ -20,7 +20,7 @@ from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["bending_energy", "caricature_table"]
 
-PANELS = {
+_PANELS = {
     "px, Eq. 20": ("E_error",),
     "% of the outer-eye distance, 23 landmarks left out": ("held out",),
     "% of the face's triangles": ("intersecting",),
@@ -28,9 +28,9 @@ PANELS = {
     "edges past 100 degrees": ("folds",),
     "sum over the face's edges of |n - n'|^2": ("bending",),
 }
-HELD_OUT = 23  # of 68
-PREDICT = ("fit_3dmm", "fit_3dmm + ARAP", "align_face", "fit_caricature")  # whose held-out error is measured
-PAPER = "paper, Table 1, E_error: 3DMM 7.24, 3DMM(-) 4.86, FaceWarehouse 19.00, caricatured 3DMM 6.46, theirs 0.03"
+_HELD_OUT = 23  # of 68
+_PREDICT = ("fit_3dmm", "fit_3dmm + ARAP", "align_face", "fit_caricature")  # whose held-out error is measured
+_PAPER = "paper, Table 1, E_error: 3DMM 7.24, 3DMM(-) 4.86, FaceWarehouse 19.00, caricatured 3DMM 6.46, theirs 0.03"
 
 
 def caricature_table(folder: Path) -> BenchTable:
@@ -53,23 +53,23 @@ def caricature_table(folder: Path) -> BenchTable:
             fewer, held = _fewer(landmarks)
             for name, method in methods.items():
                 found = method(landmarks)
-                predicted = method(fewer) if name in PREDICT else None
+                predicted = method(fewer) if name in _PREDICT else None
                 rows[name].append(_figures(found, predicted, landmarks, held, model))
         except (ValueError, RuntimeError) as error:
             raise type(error)(f"{picture.name}: {error}") from error
     return BenchTable(
         "Caricatures: baselines and fit_caricature",
         tuple(picture.name for picture in pictures),
-        PANELS,
+        _PANELS,
         {name: np.array(values) for name, values in rows.items()},
         decimals=3,
-        notes=(PAPER, "Silhouette landmarks are updated by the pose. The first four, without ARAP, are the paper's."),
+        notes=(_PAPER, "Silhouette landmarks are updated by the pose. The first four, without ARAP, are the paper's."),
     )
 
 
 def _fewer(landmarks: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Landmarks of which a third is missing, always the same rows, and these."""
-    held = np.random.default_rng(0).permutation(len(landmarks))[:HELD_OUT]
+    held = np.random.default_rng(0).permutation(len(landmarks))[:_HELD_OUT]
     fewer = landmarks.copy()
     fewer[held] = np.nan
     return fewer, held

@@ -11,8 +11,8 @@ from toongeo.model import load_eos
 
 __all__ = ["EosRival"]
 
-SHAPE, TABLE, EXPRESSION = "sfm_shape_3448.bin", "ibug_to_sfm.txt", "expression_blendshapes_3448.bin"
-EDGES, CONTOURS = "sfm_3448_edge_topology.json", "sfm_model_contours.json"
+_SHAPE, _TABLE, _EXPRESSION = "sfm_shape_3448.bin", "ibug_to_sfm.txt", "expression_blendshapes_3448.bin"
+_EDGES, _CONTOURS = "sfm_3448_edge_topology.json", "sfm_model_contours.json"
 
 
 class EosRival:
@@ -34,23 +34,23 @@ class EosRival:
             import eos
         except ImportError:
             raise ValueError("eos: expected eos-py, which is not installed: pip install eos-py==1.5.0") from None
-        for name in (SHAPE, TABLE, EXPRESSION, EDGES, CONTOURS):
+        for name in (_SHAPE, _TABLE, _EXPRESSION, _EDGES, _CONTOURS):
             if not (folder / name).is_file():
                 raise ValueError(f"eos: expected the file {name} in {folder}, got none")
-        surrey = load_eos(folder / SHAPE, folder / TABLE)
+        surrey = load_eos(folder / _SHAPE, folder / _TABLE)
         self._vertices = surrey.landmarks
         self._fitting, self._landmark = eos.fitting, eos.core.Landmark
-        shape = eos.morphablemodel.load_model(str(folder / SHAPE))
+        shape = eos.morphablemodel.load_model(str(folder / _SHAPE))
         self._model = eos.morphablemodel.MorphableModel(
             shape.get_shape_model(),
-            eos.morphablemodel.load_blendshapes(str(folder / EXPRESSION)),
+            eos.morphablemodel.load_blendshapes(str(folder / _EXPRESSION)),
             color_model=eos.morphablemodel.PcaModel(),
         )
-        self._mapper = eos.core.LandmarkMapper(str(folder / TABLE))
+        self._mapper = eos.core.LandmarkMapper(str(folder / _TABLE))
         self._contour = (
-            eos.morphablemodel.load_edge_topology(str(folder / EDGES)),
-            eos.fitting.ContourLandmarks.load(str(folder / TABLE)),
-            eos.fitting.ModelContour.load(str(folder / CONTOURS)),
+            eos.morphablemodel.load_edge_topology(str(folder / _EDGES)),
+            eos.fitting.ContourLandmarks.load(str(folder / _TABLE)),
+            eos.fitting.ModelContour.load(str(folder / _CONTOURS)),
         )
 
     def landmarks(self, landmarks: NDArray[np.float64], size: tuple[int, int]) -> NDArray[np.float64]:

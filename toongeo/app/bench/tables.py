@@ -21,22 +21,22 @@ from toongeo.metrics.landmark_distance import TABLE_PARTS
 
 __all__ = ["table1", "table2", "table4"]
 
-ERRORS = {
+_ERRORS = {
     "mean landmark distance, px of a 224 x 224 crop": tuple(TABLE_PARTS),
     "mean |dr| + |dg| + |db|, levels of 0..255": (PHOTOMETRIC,),
 }
 # Tables 1 and 2 of the paper, in the order of the columns; the paper's total is the sum of the parts.
-PAPER_COARSE = np.array([98.33, 0.55, 11.40, 1.54, 16.14, 127.96, 3.27])
-PAPER_FINE = np.array([8.27, 0.23, 11.33, 1.50, 16.11, 37.44, 0.83])
-PAPER_TOTALS = {"adjust exp": 143.38, "adjust id+exp": 110.70, "fine": 37.44}
+_PAPER_COARSE = np.array([98.33, 0.55, 11.40, 1.54, 16.14, 127.96, 3.27])
+_PAPER_FINE = np.array([8.27, 0.23, 11.33, 1.50, 16.11, 37.44, 0.83])
+_PAPER_TOTALS = {"adjust exp": 143.38, "adjust id+exp": 110.70, "fine": 37.44}
 # Table 4 of the paper: its stage -> our stages, seconds.
-PAPER_STAGES = {
+_PAPER_STAGES = {
     "coarse": (("fit",), 1.46),
     "fine": (("parse", "align", "texture"), 20.02),
     "rigging": (("rig", "eyes"), 1.84),
 }
-PAPER_FRAME_MS = 3.56
-FRAMES = 20  # animated per picture; the median counts
+_PAPER_FRAME_MS = 3.56
+_FRAMES = 20  # animated per picture; the median counts
 
 
 def table1(folder: Path, eos: Path | None = None) -> BenchTable:
@@ -60,7 +60,7 @@ def table1(folder: Path, eos: Path | None = None) -> BenchTable:
     return _with_notes(
         table,
         _ratios("fine / coarse, here", ours, table.columns),
-        _ratios("fine / coarse, paper", PAPER_FINE / PAPER_COARSE, table.columns),
+        _ratios("fine / coarse, paper", _PAPER_FINE / _PAPER_COARSE, table.columns),
         "The paper's total is the sum of the parts, ours the mean of the 68 points. Anchors are what the fine face is "
         "made to meet: the ratios can be forced.",
     )
@@ -73,8 +73,8 @@ def table2(folder: Path, eos: Path | None = None) -> BenchTable:
     """
     table = _errors("Table 2: adjusted coefficients and deformation", folder, eos, adjusted=True)
     total = table.columns.index("total")
-    ours = {method: table.mean(method)[total] for method in PAPER_TOTALS}
-    return _with_notes(table, _against("here", ours), _against("paper", PAPER_TOTALS))
+    ours = {method: table.mean(method)[total] for method in _PAPER_TOTALS}
+    return _with_notes(table, _against("here", ours), _against("paper", _PAPER_TOTALS))
 
 
 def table4(folder: Path) -> BenchTable:
@@ -99,16 +99,16 @@ def table4(folder: Path) -> BenchTable:
     means = dict(zip(table.columns, table.mean("toongeo"), strict=True))
     groups = [
         f"{name} ({' + '.join(stages)}) {sum(means[stage] for stage in stages):.2f} s, paper {seconds} s"
-        for name, (stages, seconds) in PAPER_STAGES.items()
+        for name, (stages, seconds) in _PAPER_STAGES.items()
     ]
-    frame = f"an animated frame {np.mean(frames):.3f} ± {np.std(frames):.3f} ms, paper {PAPER_FRAME_MS} ms"
+    frame = f"an animated frame {np.mean(frames):.3f} ± {np.std(frames):.3f} ms, paper {_PAPER_FRAME_MS} ms"
     return _with_notes(table, *groups, frame)
 
 
 def _errors(title: str, folder: Path, eos: Path | None, adjusted: bool) -> BenchTable:
     pictures, rival = bench_folder(folder), None if eos is None else EosRival(eos)
     values = _each(pictures, lambda img, points: method_errors(img, points, adjusted=adjusted, eos=rival))
-    return BenchTable(title, tuple(picture.name for picture in pictures), ERRORS, values)
+    return BenchTable(title, tuple(picture.name for picture in pictures), _ERRORS, values)
 
 
 def _each(
@@ -129,7 +129,7 @@ def _each(
 
 def _frame_ms(avatar: Avatar) -> float:
     weights, times = np.linspace(0, 0.5, len(avatar.names)), []
-    for _ in range(FRAMES):
+    for _ in range(_FRAMES):
         started = time.perf_counter()
         avatar.vertices(weights)
         times.append(1000 * (time.perf_counter() - started))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.caricature.baselines.linear_fit import LinearFit, equations, posed, ridge_solution
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.landmark_array import landmark_array
@@ -16,10 +17,8 @@ from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["BilinearModel", "bilinear_fit"]
 
-Floats = NDArray[np.float64]
-
 _RANKS = 50, 25  # kept singular vectors, as FaceWarehouse keeps them
-_PASSES = 10
+_PASSES = 10  # of camera and coefficients in turn
 _RIDGE = 1e-3  # of the mean diagonal: without it, coefficients that landmarks do not tell run away
 
 

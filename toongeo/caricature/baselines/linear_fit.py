@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.io.landmark_array import landmark_array
@@ -19,9 +20,7 @@ from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["LinearFit", "equations", "linear_fit", "posed", "ridge_solution"]
 
-Floats = NDArray[np.float64]
-
-_PASSES = 20
+_PASSES = 20  # of camera and coefficients in turn
 _TINY = 1e-9  # ridge of what has no regularization, against the mean diagonal: picks the smallest of many solutions
 
 

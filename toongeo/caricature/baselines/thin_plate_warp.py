@@ -7,7 +7,9 @@ from scipy.interpolate import RBFInterpolator
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io import check_image
 
-GRID = 8  # px: the smooth warp is evaluated at every so many pixels
+__all__ = ["thin_plate_warp"]
+
+_GRID = 8  # px: the smooth warp is evaluated at every so many pixels
 
 
 def thin_plate_warp(img: np.ndarray, source: np.ndarray, target: np.ndarray) -> np.ndarray:
@@ -46,11 +48,11 @@ def thin_plate_warp(img: np.ndarray, source: np.ndarray, target: np.ndarray) -> 
     frame = frame[np.abs(frame - [width // 2, height // 2]).max(1) > 1]
     knots, first = np.unique(np.vstack([target, frame]), axis=0, return_index=True)
     back = np.vstack([source, frame])[first] - knots
-    columns, rows = np.arange(0, width + GRID, GRID), np.arange(0, height + GRID, GRID)
+    columns, rows = np.arange(0, width + _GRID, _GRID), np.arange(0, height + _GRID, _GRID)
     grid = np.stack(np.meshgrid(columns, rows), axis=2).reshape(-1, 2).astype(float)
     with one_thread():
         coarse = RBFInterpolator(knots, back, kernel="thin_plate_spline")(grid)
     coarse = coarse.reshape(len(rows), len(columns), 2).astype(np.float32)
     x, y = np.meshgrid(np.arange(width, dtype=np.float32), np.arange(height, dtype=np.float32))
-    motion = [cv2.remap(coarse[..., k].copy(), x / GRID, y / GRID, cv2.INTER_LINEAR) for k in range(2)]
+    motion = [cv2.remap(coarse[..., k].copy(), x / _GRID, y / _GRID, cv2.INTER_LINEAR) for k in range(2)]
     return np.asarray(cv2.remap(img, x + motion[0], y + motion[1], cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE))

@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.arrays import Floats
 from toongeo.caricature.blendshapes.shifted_systems import shifted_solutions
 from toongeo.geometry import cotangent_laplacian, validate_mesh
 from toongeo.geometry.one_thread import one_thread
@@ -21,8 +22,6 @@ __all__ = [
     "signed_graph",
     "squared_laplacian",
 ]
-
-Floats = NDArray[np.float64]
 
 _STILL = 1e-6  # of the largest motion: what moves less in the normal face does not move
 _CLAMP = 0.05  # cotangent weights of thin triangles

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from toongeo.arrays import Floats
 from toongeo.caricature.blendshapes.optimize_blendshapes import expression_similarities
 from toongeo.geometry.one_thread import one_thread
 
 __all__ = ["restore_similarities"]
-
-Floats = NDArray[np.float64]
 
 _FLAT = 1e-12  # of the largest eigenvalue: directions that no expression has
 

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.operators.factor import factor_spd, solve
 
 __all__ = ["shifted_solutions"]
 
-Floats = NDArray[np.float64]
-
-_TOLERANCE = 1e-10
-_ROUNDS = 60
+_TOLERANCE = 1e-10  # of the residual against the right-hand side
+_ROUNDS = 60  # of conjugate gradients at most
 _FLOOR = 1e-11  # of the mean diagonal entry: added to all, so that what nothing holds stays at rest
 
 

@@ -1,13 +1,17 @@
-"""The expression of a face whose identity may be exaggerated."""
+"""The expression of a face whose identity may be exaggerated.
+
+Constants were judged on faces of the deformation space and four pictures (``benchmarks/caricature_expressions.py``).
+"""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import lsq_linear
 
+from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import PARTS
@@ -15,8 +19,6 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.face_fit import FaceFit
 
 __all__ = ["sparse_expression"]
-
-Floats = NDArray[np.float64]
 
 # How loosely a drawing keeps to the model, as multiples of the three rows below; the likeliest is taken.
 _LOOSENESS = 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0

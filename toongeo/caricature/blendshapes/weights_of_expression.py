@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import lsq_linear
 
+from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["weights_of_expression"]
-
-Floats = NDArray[np.float64]
 
 _TINY = 1e-10  # of the mean diagonal: what moves nothing gets weight 0
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.operators.one_rings import OneRings
 from toongeo.geometry.rotations.polar_decomposition import polar_decomposition
 from toongeo.geometry.rotations.rotation_log import rotation_log
 
 __all__ = ["deformation_representation", "full", "packed", "rotation_and_stretch"]
-
-Floats = NDArray[np.float64]
 
 # A symmetric matrix as six numbers: xx, xy, xz, yy, yz, zz.
 _ROW, _COLUMN = np.array([0, 0, 0, 1, 1, 2]), np.array([0, 1, 2, 1, 2, 2])

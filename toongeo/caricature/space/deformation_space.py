@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.linalg import SuperLU
 
+from toongeo.arrays import Floats
 from toongeo.caricature.space.encode_shapes import component_means, encode_shapes
 from toongeo.caricature.space.encoded_shapes import STORED, EncodedShapes
 from toongeo.caricature.space.fit_weights import WeightFit, WeightProblem
@@ -20,8 +21,6 @@ from toongeo.geometry.operators.factor import factor_spd, solve
 from toongeo.geometry.validate_mesh import validate_vertices
 
 __all__ = ["DeformationSpace"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,16 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.arrays import Floats, Singles
 from toongeo.caricature.space.deformation_representation import rotation_and_stretch
 from toongeo.geometry import validate_mesh, vertex_components
 from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.operators.one_rings import OneRings, one_rings
+from toongeo.geometry.rotations.rigid_rotation import rigid_rotation
 from toongeo.geometry.validate_mesh import validate_vertices
 
 __all__ = ["component_means", "encode_shapes"]
-
-Floats = NDArray[np.float64]
-Singles = NDArray[np.float32]
 
 
 def encode_shapes(
@@ -52,8 +51,5 @@ def component_means(x: Floats, component: NDArray[np.int64]) -> Floats:
 
 def _rigidly_aligned(P: Floats, V: Floats) -> Floats:
     """``P`` turned and shifted onto ``V``, in the least-squares sense (Kabsch)."""
-    A, B = P - P.mean(0), V - V.mean(0)
     with one_thread():
-        U, _, Vt = np.linalg.svd(B.T @ A)
-        rotation = (U * [1.0, 1.0, np.sign(np.linalg.det(U @ Vt))]) @ Vt
-        return A @ rotation.T + V.mean(0)
+        return (P - P.mean(0)) @ rigid_rotation(P, V).T + V.mean(0)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.caricature.space.deformation_representation import full, packed
 from toongeo.geometry import validate_mesh, vertex_components
 from toongeo.geometry.one_thread import one_thread
@@ -17,8 +18,6 @@ from toongeo.geometry.operators.small_matrices import product
 from toongeo.geometry.rotations.rotation_exp import rotation_exp
 
 __all__ = ["STORED", "EncodedShapes"]
-
-Floats = NDArray[np.float64]
 
 STORED = ("reference", "faces", "rotations", "stretches", "bends", "offsets")  # the fields that a file holds
 

@@ -16,7 +16,7 @@ from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["FaceSpace", "face_space"]
 
-POOL = 150  # identities, of which the half that differs most is taken (section 5.1)
+_POOL = 150  # identities, of which the half that differs most is taken (section 5.1)
 IDENTITIES = 75
 EXPRESSIONS = 23
 _SEED = 2018
@@ -82,9 +82,9 @@ def _face_space(model: MorphableModel) -> FaceSpace:
     vertices = _skin(model)
     inside = np.isin(model.faces, vertices).all(axis=1)
     V = model.mean[vertices]
-    coefficients = np.random.default_rng(_SEED).standard_normal((POOL, len(model.identity)))
+    coefficients = np.random.default_rng(_SEED).standard_normal((_POOL, len(model.identity)))
     modes = model.identity[:, vertices].reshape(len(model.identity), -1)
-    identities = _farthest((coefficients.astype(np.float32) @ modes).reshape(POOL, -1, 3), IDENTITIES)
+    identities = _farthest((coefficients.astype(np.float32) @ modes).reshape(_POOL, -1, 3), IDENTITIES)
     expressions = _farthest(model.expression[: model.n_named, vertices], EXPRESSIONS)
     shapes = V + np.concatenate([identities, expressions]).astype(np.float64)
     space = DeformationSpace.from_meshes(V, np.searchsorted(vertices, model.faces[inside]), shapes, align=False)

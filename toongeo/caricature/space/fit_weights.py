@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.caricature.space.deformation_representation import full, packed
 from toongeo.caricature.space.encoded_shapes import EncodedShapes
 from toongeo.geometry.one_thread import one_thread
@@ -18,11 +19,9 @@ from toongeo.geometry.rotations.rotation_exp import right_jacobian, rotation_exp
 
 __all__ = ["WeightFit", "WeightProblem"]
 
-Floats = NDArray[np.float64]
-
 _TOLERANCE = 1e-6  # relative fall of the energy below which a step was the last
 _FIRST_DAMPING = 1e-4  # of the diagonal of the Gauss-Newton matrix
-_MOST_DAMPING = 1e8
+_MOST_DAMPING = 1e8  # where a step no longer moves anything
 _TWICE = packed(np.full((3, 3, 1), 2.0) - np.eye(3)[:, :, None])  # how often each of the six numbers stands in S
 
 

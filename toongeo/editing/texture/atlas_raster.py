@@ -4,6 +4,8 @@ import numpy as np
 
 from toongeo.render import rasterize, uv_to_px
 
+__all__ = ["AtlasRaster"]
+
 
 class AtlasRaster:
     """Rasterized texture coordinates (t, 2) of faces (m, 3), with the vertices behind every texel."""

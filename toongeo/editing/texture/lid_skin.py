@@ -1,4 +1,7 @@
-"""Skin and lash lines of closed lids."""
+"""Skin and lash lines of closed lids.
+
+Constants were judged on the seven examples (``benchmarks/editing.py``).
+"""
 
 import cv2
 import numpy as np
@@ -12,12 +15,14 @@ from toongeo.pipeline import Rig
 from toongeo.pipeline.texture.diffuse_over_mesh import diffuse_over_mesh
 from toongeo.render import uv_to_px
 
-STRETCHED = 1.2  # growth by which a blink spreads what is drawn beside the eye over the lid
-AROUND = 7  # edges: width of the ring of skin from which a lid takes its colour
-DARKER = 50.0  # percent of that skin, which lend nothing
-SOFTEN = 3  # passes over the border of the lid
+__all__ = ["LINE", "lash_colour", "lash_lines", "lid_skin", "lid_zones"]
+
+_STRETCHED = 1.2  # growth by which a blink spreads what is drawn beside the eye over the lid
+_AROUND = 7  # edges: width of the ring of skin from which a lid takes its colour
+_DARKER = 50.0  # percent of that skin, which lend nothing
+_SOFTEN = 3  # passes over the border of the lid
 LINE = 0.045  # of the eye's width: thickness of a lash line
-FINE = 4  # subtexels a side for lines
+_FINE = 4  # subtexels a side for lines
 
 
 def lid_zones(model: MorphableModel, rig: Rig) -> np.ndarray:
@@ -31,11 +36,11 @@ def lid_zones(model: MorphableModel, rig: Rig) -> np.ndarray:
         blink = rig.deltas[rig.names.index(f"eyeBlink{name.capitalize()}")]
         growth = _areas(rig.neutral + blink, triangles) / np.maximum(_areas(rig.neutral, triangles), 1e-9)
         zone = np.zeros(len(model.mean))
-        zone[triangles[growth > STRETCHED]] = 1
+        zone[triangles[growth > _STRETCHED]] = 1
         zone[lid_rings(model, name).upper] = 1
         core = np.minimum(edges @ zone, 1)
         zone = core
-        for _ in range(2 * SOFTEN):
+        for _ in range(2 * _SOFTEN):
             zone = np.maximum(core * (region | (zone > 0.5)), (edges @ zone) / degree)
         zones[side] = zone
     return zones
@@ -54,13 +59,13 @@ def lid_skin(model: MorphableModel, colours: np.ndarray, zones: np.ndarray) -> n
     filled = np.array(colours, float)
     for zone, name in zip(zones, SIDES, strict=True):
         near = zone > 0
-        for _ in range(AROUND):
+        for _ in range(_AROUND):
             near = near | (edges @ near > 0)
         rims = np.isin(np.arange(len(zone)), lid_rings(model, name).vertices)
         ring = near & (zone < 0.5) & ~rims & ~sockets & model.region("face")
-        known = ring & (lightness >= np.percentile(lightness[ring], DARKER))
+        known = ring & (lightness >= np.percentile(lightness[ring], _DARKER))
         smooth, _ = diffuse_over_mesh(triangles, np.asarray(colours, float), known | ~near)
-        for _ in range(8 * SOFTEN):
+        for _ in range(8 * _SOFTEN):
             smooth = np.where((known | ~near)[:, None], smooth, (edges @ smooth) / degree)
         filled[near] = smooth[near]
     return np.asarray(filled, np.float32)
@@ -74,12 +79,12 @@ def lash_lines(model: MorphableModel, V: np.ndarray, size: int) -> np.ndarray:
     for side, name in enumerate(SIDES):
         rings = lid_rings(model, name)
         path = 0.5 * (vertex_uv[rings.upper[1]] + vertex_uv[rings.upper[2]])
-        px = uv_to_px(path, size * FINE, size * FINE)
+        px = uv_to_px(path, size * _FINE, size * _FINE)
         length = np.linalg.norm(np.diff(V[rings.upper[2]], axis=0), axis=1).sum()
         texels = np.linalg.norm(np.diff(px, axis=0), axis=1).sum()
         width = float(np.linalg.norm(V[rings.upper[0, 0]] - V[rings.upper[0, -1]]))
         thick = max(1, round(LINE * width * texels / length))
-        canvas = np.zeros((size * FINE, size * FINE), np.uint8)
+        canvas = np.zeros((size * _FINE, size * _FINE), np.uint8)
         cv2.polylines(canvas, [np.rint(px).astype(np.int32)], False, 255, thick)
         lines[side] = cv2.resize(canvas, (size, size), interpolation=cv2.INTER_AREA) / 255.0
     return lines

@@ -3,6 +3,8 @@
 import cv2
 import numpy as np
 
+__all__ = ["from_lab", "match_colours", "to_lab"]
+
 
 def to_lab(colours: np.ndarray) -> np.ndarray:
     """CIELAB (k, 3) float32, L in 0-100, of sRGB colours (k, 3), 0-255."""

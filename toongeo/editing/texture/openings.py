@@ -1,4 +1,7 @@
-"""How far eyes have closed and the mouth has opened between two expressions."""
+"""How far eyes have closed and the mouth has opened between two expressions.
+
+Constants were judged on the seven examples (``benchmarks/editing.py``).
+"""
 
 from functools import lru_cache
 
@@ -9,8 +12,10 @@ from toongeo.model.anatomy.lid_rings import lid_rings, opening_height
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.anatomy.rims import rim_path
 
-CLOSED = 0.75  # of its height: an opening that has lost so much shows the lid of a closed eye
-TOUCHING, PARTED = 0.035, 0.09  # of the mouth's width: lips so far apart still touch, and show the inside
+__all__ = ["inner_rims", "lid_closing", "lips_parted"]
+
+_CLOSED = 0.75  # of its height: an opening that has lost so much shows the lid of a closed eye
+_TOUCHING, _PARTED = 0.035, 0.09  # of the mouth's width: lips so far apart still touch, and show the inside
 
 
 def lid_closing(model: MorphableModel, source: np.ndarray, target: np.ndarray) -> np.ndarray:
@@ -20,7 +25,7 @@ def lid_closing(model: MorphableModel, source: np.ndarray, target: np.ndarray) -
         rings = lid_rings(model, name)
         before, after = (opening_height(V[rings.upper[0]], V[rings.lower[0]]) for V in (source, target))
         width = float(np.linalg.norm(source[rings.upper[0, 0]] - source[rings.upper[0, -1]]))
-        closing[side] = np.clip((1 - after / max(before, 0.02 * width)) / CLOSED, 0, 1)
+        closing[side] = np.clip((1 - after / max(before, 0.02 * width)) / _CLOSED, 0, 1)
     return closing * closing * (3 - 2 * closing)
 
 
@@ -29,7 +34,7 @@ def lips_parted(model: MorphableModel, V: np.ndarray) -> float:
     upper, lower = inner_rims(model)
     width = float(np.linalg.norm(V[upper[0]] - V[upper[-1]]))
     apart = opening_height(V[upper], V[lower]) / max(width, 1e-9)
-    return float(np.clip((apart - TOUCHING) / (PARTED - TOUCHING), 0, 1))
+    return float(np.clip((apart - _TOUCHING) / (_PARTED - _TOUCHING), 0, 1))
 
 
 @lru_cache(maxsize=4)

@@ -1,4 +1,7 @@
-"""The face of a picture as a mesh that carries the picture."""
+"""The face of a picture as a mesh that carries the picture.
+
+Constants were judged on the seven examples (``benchmarks/editing.py``).
+"""
 
 from dataclasses import dataclass
 
@@ -10,10 +13,12 @@ from toongeo.pipeline import AlignedFace, Eyes
 from toongeo.protocols import Camera
 from toongeo.render import rasterize
 
-SKIN, MOUTH, EYE, BEHIND = range(4)  # what a triangle shows; BEHIND is skin that the picture does not show
-FINE = 1400  # px over the face's larger side at which visibility in the picture is decided
-GRAZING = 0.12  # cosine to the viewer below which skin moves with what is beside it in the picture
-STRETCH = (2.0, 4.0)  # growth of the projected area up to which a drawing is stretched, and from which it is not
+__all__ = ["EYE", "MOUTH", "PictureMesh", "SKIN", "picture_mesh"]
+
+SKIN, MOUTH, EYE, _BEHIND = range(4)  # what a triangle shows; _BEHIND is skin that the picture does not show
+_FINE = 1400  # px over the face's larger side at which visibility in the picture is decided
+_GRAZING = 0.12  # cosine to the viewer below which skin moves with what is beside it in the picture
+_STRETCH = (2.0, 4.0)  # growth of the projected area up to which a drawing is stretched, and from which it is not
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +31,7 @@ class PictureMesh:
         Of the head, then of the left and the right eyeball.
     faces : (m, 3) int64
     labels : (m,) uint8
-        SKIN, MOUTH, EYE or BEHIND.
+        SKIN, MOUTH, EYE or _BEHIND.
     uv : (m, 3, 2) float32
         Texture coordinates of the corners, origin bottom left.
     seen : (n + e,) float32
@@ -60,7 +65,7 @@ class PictureMesh:
         growth = (after + floor) / (before + floor)
         worst = np.zeros(len(self.seen), np.float32)
         np.maximum.at(worst, self.faces.ravel(), growth.astype(np.float32).repeat(3))
-        share = self.seen * (1 - np.clip((worst - STRETCH[0]) / (STRETCH[1] - STRETCH[0]), 0, 1))
+        share = self.seen * (1 - np.clip((worst - _STRETCH[0]) / (_STRETCH[1] - _STRETCH[0]), 0, 1))
         return np.where(self.soft, share, 1).astype(np.float32)
 
 
@@ -86,8 +91,8 @@ def picture_mesh(face: AlignedFace, eyes: Eyes) -> PictureMesh:
     soft = np.ones(len(V), bool)
     lips_and_lids = model.region("lips") | model.region("eye_left") | model.region("eye_right")
     soft[: len(face.vertices)] = lips_and_lids | inner | socket
-    hidden = (seen[F].min(1) == 0) | (cosine < GRAZING)
-    label[(label == SKIN) & hidden & ~soft[F].any(1)] = BEHIND
+    hidden = (seen[F].min(1) == 0) | (cosine < _GRAZING)
+    label[(label == SKIN) & hidden & ~soft[F].any(1)] = _BEHIND
     uv_corners = np.concatenate(uv).astype(np.float32)
     return PictureMesh(V, F, label, uv_corners, seen, soft, px.astype(np.float32), face.camera)
 
@@ -96,7 +101,7 @@ def _shown(px: np.ndarray, depth: np.ndarray, F: np.ndarray) -> np.ndarray:
     """Triangles (m,) of which something is in front."""
     used = px[np.unique(F)]
     low, high = used.min(0), used.max(0)
-    scale = FINE / (high - low).max()
+    scale = _FINE / (high - low).max()
     width, height = (np.ceil((high - low) * scale) + 1).astype(int)
     ids = rasterize(np.column_stack([(px - low) * scale, depth * scale]), F, height, width).face_ids
     shown = np.zeros(len(F), bool)

@@ -1,4 +1,7 @@
-"""A picture redrawn with its face moved."""
+"""A picture redrawn with its face moved.
+
+Constants were judged on the seven examples (``benchmarks/editing.py``).
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,16 +15,18 @@ from toongeo.protocols import FaceLabel, FaceParse
 from toongeo.render import rasterize
 from toongeo.render.interpolate import blend_corners
 
-REACH = 0.45  # of the face's width: farther from the landmarks' box nothing is ever touched
-FALLOFF = 2.2  # of the greatest motion: over this distance the neighbourhood comes to rest, without folding
-LEAST_FALLOFF = 0.12  # of the face's width
-CALM = 0.05  # of the face's width: over this distance the motion dies down towards hair and ears
-EYE_LINE, MOUTH_LINE = 0.05, 0.015  # of the width of eye and mouth: reach of what is drawn along their rims
-BESIDE = 2.0  # lines: so near to what is seen of an eye, the rest looks alike
-LEAST_LINE = 1.5  # px
-JUMP = 1.5  # px between neighbours: motion that differs more has an edge in between, to be softened
-NOTHING = 255  # label where there is no face
-STILL = 1 / 64  # px; less motion is none
+__all__ = ["PictureWarp", "Stroke", "picture_warp", "rim_cover"]
+
+_REACH = 0.45  # of the face's width: farther from the landmarks' box nothing is ever touched
+_FALLOFF = 2.2  # of the greatest motion: over this distance the neighbourhood comes to rest, without folding
+_LEAST_FALLOFF = 0.12  # of the face's width
+_CALM = 0.05  # of the face's width: over this distance the motion dies down towards hair and ears
+_EYE_LINE, _MOUTH_LINE = 0.05, 0.015  # of the width of eye and mouth: reach of what is drawn along their rims
+_BESIDE = 2.0  # lines: so near to what is seen of an eye, the rest looks alike
+_LEAST_LINE = 1.5  # px
+_JUMP = 1.5  # px between neighbours: motion that differs more has an edge in between, to be softened
+_NOTHING = 255  # label where there is no face
+_STILL = 1 / 64  # px; less motion is none
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,12 +90,12 @@ class PictureWarp:
         """
         px = self.mesh.camera.project(vertices) - self.corner
         ids, values = self._drawn(px, self.mesh.camera.depth(vertices), renewed)
-        label = np.where(ids >= 0, self.mesh.labels[ids], NOTHING)
+        label = np.where(ids >= 0, self.mesh.labels[ids], _NOTHING)
         skin, inner = label == SKIN, (label == EYE) | (label == MOUTH)
         motion, share = values[..., :2], values[..., 2:3]
         carried = spread_field(motion, skin)
         carried *= (self._falloff(skin | inner, carried) * self.freedom)[..., None]
-        carried *= (_largest(carried) >= STILL)[..., None]
+        carried *= (_largest(carried) >= _STILL)[..., None]
         uv = _texels(values[..., 3:], texture)
         outer = self._sampled(carried)
         rows = _bounds(ids >= 0)
@@ -102,12 +107,12 @@ class PictureWarp:
         if not inner.any():
             return _softened(outer, carried)
         rows = _bounds(inner, margin=2)
-        motion = np.where(np.abs(motion) < STILL, 0, motion)[rows]
-        trust = share[rows] * self._sampled(motion, self.interior, rows)[..., None]
+        motion = np.where(np.abs(motion) < _STILL, 0, motion)[rows]
+        confidence = share[rows] * self._sampled(motion, self.interior, rows)[..., None]
         within = np.where(inner[rows][..., None], _remap(texture, uv[rows], cv2.INTER_LINEAR), 0)
         drawn = self._sampled(motion, self.picture, rows)
-        within = self._eyes_completed(within, drawn, (label == EYE)[rows], trust[..., 0])
-        within += trust * (drawn - within)
+        within = self._eyes_completed(within, drawn, (label == EYE)[rows], confidence[..., 0])
+        within += confidence * (drawn - within)
         # Colours of the inside reach a little under the rim, so that its edge can be soft.
         within = spread_field(within, inner[rows])
         over = rim_cover(label, self.lines)[rows][..., None]
@@ -128,13 +133,15 @@ class PictureWarp:
             image = image + (stroke.strength / 255 * cover * self.freedom)[..., None] * (stroke.colour - image)
         return image
 
-    def _eyes_completed(self, painted: np.ndarray, drawn: np.ndarray, eye: np.ndarray, trust: np.ndarray) -> np.ndarray:
+    def _eyes_completed(
+        self, painted: np.ndarray, drawn: np.ndarray, eye: np.ndarray, confidence: np.ndarray
+    ) -> np.ndarray:
         """Colours of eyes where they come into view: those of what is seen beside it, farther off the texture's."""
-        seen = eye & (trust > 0.99)
+        seen = eye & (confidence > 0.99)
         if not seen.any():
             return painted
         away = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)
-        near = np.clip(2 - away / (BESIDE * self.lines[1]), 0, 1) * eye
+        near = np.clip(2 - away / (_BESIDE * self.lines[1]), 0, 1) * eye
         return np.asarray(painted + near[..., None] * (spread_field(drawn, seen) - painted))
 
     def _drawn(self, px: np.ndarray, depth: np.ndarray, renewed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -170,7 +177,7 @@ class PictureWarp:
         """1 (h, w) on the face, falling to 0 around it over a distance in which the motion cannot fold."""
         away = cv2.distanceTransform((~face).astype(np.uint8), cv2.DIST_L2, 5)
         most = float(_largest(motion)[face].max(initial=0))
-        t = np.clip(1 - away / max(FALLOFF * most, LEAST_FALLOFF * self.width), 0, 1)
+        t = np.clip(1 - away / max(_FALLOFF * most, _LEAST_FALLOFF * self.width), 0, 1)
         return np.asarray(t * t * (3 - 2 * t))
 
 
@@ -189,8 +196,8 @@ def picture_warp(img: np.ndarray, landmarks: np.ndarray, mesh: PictureMesh, pars
     low, high = landmarks.min(0), landmarks.max(0)
     low, high = np.minimum(low, used.min(0)), np.maximum(high, used.max(0))
     bounds = np.array(img.shape[1::-1])
-    start = np.clip(np.floor(low - REACH * width), 0, bounds - 1).astype(int)
-    end = np.clip(np.ceil(high + REACH * width) + 1, start + 1, bounds).astype(int)
+    start = np.clip(np.floor(low - _REACH * width), 0, bounds - 1).astype(int)
+    end = np.clip(np.ceil(high + _REACH * width) + 1, start + 1, bounds).astype(int)
     box = slice(start[1], end[1]), slice(start[0], end[0])
     hull = cv2.convexHull(np.rint(landmarks - start).astype(np.int32))
     hair = parse.mask(FaceLabel.HAIR, FaceLabel.EARS)[box]
@@ -207,16 +214,16 @@ def picture_warp(img: np.ndarray, landmarks: np.ndarray, mesh: PictureMesh, pars
     for edge, inside in ((np.s_[0], start[0] == 0), (np.s_[-1], end[0] == bounds[0])):
         frame[:, edge] = 0 if inside else 1
     away = cv2.distanceTransform(1 - frame, cv2.DIST_L2, 5)[1:-1, 1:-1]
-    t = np.clip(away / (CALM * width), 0, 1)
+    t = np.clip(away / (_CALM * width), 0, 1)
     mouth, eye = (
         float(np.ptp(landmarks[48:60, 0])),
         max(float(np.ptp(landmarks[rows, 0])) for rows in (slice(36, 42), slice(42, 48))),
     )
-    lines = max(MOUTH_LINE * mouth, 1.0), max(EYE_LINE * eye, LEAST_LINE)
+    lines = max(_MOUTH_LINE * mouth, 1.0), max(_EYE_LINE * eye, _LEAST_LINE)
     freedom = (t * t * (3 - 2 * t)).astype(np.float32)
     warp = PictureWarp(mesh, img[box].astype(np.float32), start, freedom, np.ones_like(freedom), width, lines)
     ids = warp._drawn(mesh.px - start, mesh.camera.depth(mesh.vertices), np.zeros(len(mesh.px)))[0]
-    interior = rim_cover(np.where(ids >= 0, mesh.labels[ids], NOTHING), lines) < 1
+    interior = rim_cover(np.where(ids >= 0, mesh.labels[ids], _NOTHING), lines) < 1
     return replace(warp, interior=interior.astype(np.float32))
 
 
@@ -225,10 +232,10 @@ def _softened(image: np.ndarray, motion: np.ndarray) -> np.ndarray:
     edge = np.zeros(motion.shape[:2], np.float32)
     edge[:, 1:] = _largest(motion[:, 1:] - motion[:, :-1])
     edge[1:] = np.maximum(edge[1:], _largest(motion[1:] - motion[:-1]))
-    if edge.max() < JUMP:
+    if edge.max() < _JUMP:
         return image
-    box = _bounds(edge > JUMP, margin=2)
-    share = np.minimum(2 * cv2.GaussianBlur((edge[box] > JUMP).astype(np.float32), (3, 3), 0), 1)[..., None]
+    box = _bounds(edge > _JUMP, margin=2)
+    share = np.minimum(2 * cv2.GaussianBlur((edge[box] > _JUMP).astype(np.float32), (3, 3), 0), 1)[..., None]
     image[box] += share * (cv2.GaussianBlur(image[box], (3, 3), 0) - image[box])
     return image
 

@@ -3,6 +3,8 @@
 import cv2
 import numpy as np
 
+__all__ = ["spread_field"]
+
 
 def spread_field(field: np.ndarray, known: np.ndarray) -> np.ndarray:
     """Fill a field where it is not known from where it is, nearby places first (pull and push over a pyramid).

@@ -14,7 +14,17 @@ from toongeo.geometry.operators.components import components
 from toongeo.geometry.operators.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.operators.uniform_laplacian import uniform_laplacian
 from toongeo.geometry.rotations.ring_rotations import ring_rotations
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
+
+__all__ = [
+    "AnchoredMesh",
+    "DEFAULT_WEIGHT",
+    "add_anchors",
+    "anchored_mesh",
+    "checked_rotations",
+    "checked_targets",
+    "turned_pull",
+]
 
 # lambda of Eq. 10, which the paper does not tell. An anchor stops where the pull of the surface meets lambda
 # times its residual. As L has a unit diagonal the pull is a fraction of the displacement, 0.08 of it on a
@@ -77,8 +87,8 @@ class AnchoredMesh:
 
 
 def anchored_mesh(
-    V: ArrayLike,
-    F: ArrayLike,
+    V: MeshLike,
+    F: ArrayLike | None,
     anchors: ArrayLike,
     weight: ArrayLike,
     laplacian: str,

@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from toongeo.geometry.one_thread import one_thread
+from toongeo.geometry.rotations.nearest_rotation import nearest_rotation
+
+__all__ = ["follow", "loose_parts"]
 
 
 def loose_parts(
@@ -29,6 +32,5 @@ def follow(
             # The little of the identity keeps the turn that near vertices on a line or at a point leave open at none.
             spread = (rest[near] - centre).T @ (rest[near] - centre)
             covariance = (moved[near] - arrived).T @ (rest[near] - centre) + 1e-9 * np.trace(spread) * np.eye(3)
-            U, _, Vt = np.linalg.svd(covariance if np.trace(spread) > 0 else np.eye(3))
-            signs = np.array([1.0, 1.0, np.sign(np.linalg.det(U @ Vt))])
-            moved[part] = (rest[part] - centre) @ ((U * signs) @ Vt).T + arrived
+            turn = nearest_rotation(covariance if np.trace(spread) > 0 else np.eye(3))
+            moved[part] = (rest[part] - centre) @ turn.T + arrived

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from toongeo.geometry.operators.cross import cross
 
+__all__ = ["fourth_edges", "transfer_operators"]
+
 
 def fourth_edges(V: NDArray[np.float64], corners: NDArray[np.int64]) -> NDArray[np.float64]:
     """``n / sqrt|n|`` (m, 3), ``n`` the cross product of two edges (Eq. 14); 0 for a collapsed triangle."""

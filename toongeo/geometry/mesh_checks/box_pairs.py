@@ -7,6 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["box_pairs"]
+
 # Pairs of tree nodes looked at together; bounds the memory also where everything overlaps everything.
 _CHUNK = 1 << 19
 

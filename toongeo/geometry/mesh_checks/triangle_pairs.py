@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from toongeo.geometry.operators.cross import cross
 
+__all__ = ["triangles_intersect"]
+
 # Below this fraction of (largest edge)^2 x (size of the mesh) a signed volume counts as zero.
 _ZERO = 1e-14
 

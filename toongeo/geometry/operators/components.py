@@ -6,6 +6,8 @@ from scipy.sparse.csgraph import connected_components
 
 from toongeo.geometry.operators.adjacency import adjacency
 
+__all__ = ["components"]
+
 
 def components(F: NDArray[np.int64], n: int) -> NDArray[np.int64]:
     """Component number (n,) of every vertex; a vertex without a triangle is a component of its own."""

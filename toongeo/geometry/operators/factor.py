@@ -9,6 +9,8 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from toongeo.geometry.one_thread import one_thread
 
+__all__ = ["factor_spd", "solve"]
+
 # Right-hand sides a call: supernodes make a few at once cheaper than one by one, many fall out of the cache.
 _CHUNK = 16
 

@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["product"]
+
 
 def product(A: NDArray[np.float64], B: NDArray[np.float64]) -> NDArray[np.float64]:
     """``A_i B_i`` (a, c, n) of matrices (a, 3, n) and (3, c, n); faster than einsum or matmul at this size."""

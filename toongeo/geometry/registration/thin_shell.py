@@ -9,6 +9,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import SuperLU
 
+from toongeo.arrays import Floats
 from toongeo.geometry.facing_surface import FACING, FacingSurface
 from toongeo.geometry.operators.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.operators.factor import factor_spd, solve
@@ -16,15 +17,15 @@ from toongeo.geometry.operators.vertex_normals import vertex_normals
 
 __all__ = ["ThinShell"]
 
-Floats = NDArray[np.float64]
-
 # With the landmarks' root mean square distance from their centre as the unit of length, at stiffness 1:
-BENDING, STRETCHING = 1e-3, 1e-3
-STAY = 1e-6  # what nothing pulls, such as a loose part, stays where the similarity puts it
-SLIDING = 0.1  # weight of an error along the surface against one across it
-LEAST_REACH, REACH = 0.02, 3.0  # distance at which a partner's pull fades: units, medians of the distances
-THINNED = 4  # a stiff shell has no need of more: every so many vertices look for a partner, but for the last two levels
-STEPS, PRECISION = 8, 1e-3  # of the conjugate gradients in each iteration
+_BENDING, _STRETCHING = 1e-3, 1e-3
+_STAY = 1e-6  # what nothing pulls, such as a loose part, stays where the similarity puts it
+_SLIDING = 0.1  # weight of an error along the surface against one across it
+_LEAST_REACH, _REACH = 0.02, 3.0  # distance at which a partner's pull fades: units, medians of the distances
+_THINNED = (
+    4  # a stiff shell has no need of more: every so many vertices look for a partner, but for the last two levels
+)
+_STEPS, _PRECISION = 8, 1e-3  # of the conjugate gradients in each iteration
 
 
 class ThinShell:
@@ -37,8 +38,8 @@ class ThinShell:
         area = np.bincount(F.ravel(), np.repeat(double / 6, 3), minlength=len(V))
         area = np.maximum(area, 1e-3 * area.mean())
         self.area = area
-        self.energy = BENDING * L @ sp.diags_array(1 / area) @ L + STRETCHING * L
-        self.stay = STAY * sp.diags_array(area)
+        self.energy = _BENDING * L @ sp.diags_array(1 / area) @ L + _STRETCHING * L
+        self.stay = _STAY * sp.diags_array(area)
         self.pull = at.T @ sp.diags_array(landmark_weight)
         self.landmarks = self.pull @ at
 
@@ -51,12 +52,12 @@ class ThinShell:
         step = 0.0
         sought = np.flatnonzero(fitted)
         for number, level in enumerate(levels):
-            stride = THINNED if number < len(levels) - 2 else 1
-            trust = level / levels[0]  # in the end surfaces decide: two annotators do not mark quite the same points
-            rest, smooth = X, level * self.energy + self.stay + trust * self.landmarks
-            mean_pull = (1 + 2 * SLIDING) / 3
+            stride = _THINNED if number < len(levels) - 2 else 1
+            share = level / levels[0]  # in the end surfaces decide: two annotators do not mark quite the same points
+            rest, smooth = X, level * self.energy + self.stay + share * self.landmarks
+            mean_pull = (1 + 2 * _SLIDING) / 3
             factor = factor_spd(smooth + mean_pull * sp.diags_array(self.area * fitted))
-            to_points = trust * self.pull @ (points - self.at @ rest)
+            to_points = share * self.pull @ (points - self.at @ rest)
             for _ in range(iterations):
                 before = X
                 X = rest + self._displacement(surface, X, rest, sought[::stride], stride, smooth, factor, to_points)
@@ -83,13 +84,13 @@ class ThinShell:
         partners, normals = surface.points(triangles, bary), surface.normals_at(triangles, bary)
         facing = (cosines >= FACING) & ~surface.at_border(triangles, bary)
         distance = np.linalg.norm(partners - seekers, axis=1)
-        reach = max(LEAST_REACH, REACH * float(np.median(distance[facing]))) if facing.any() else LEAST_REACH
+        reach = max(_LEAST_REACH, _REACH * float(np.median(distance[facing]))) if facing.any() else _LEAST_REACH
         weight = (stride * self.area[rows] * facing / (1 + (distance / reach) ** 2) ** 2)[:, None]  # Geman-McClure
 
         def drawn(d: Floats) -> Floats:
             across = normals * (normals * d).sum(1, keepdims=True)
             pulls = np.zeros_like(X)
-            pulls[rows] = weight * (SLIDING * d + (1 - SLIDING) * across)
+            pulls[rows] = weight * (_SLIDING * d + (1 - _SLIDING) * across)
             return pulls
 
         def system(d: Floats) -> Floats:
@@ -101,10 +102,10 @@ class ThinShell:
 def _conjugate_gradients(system: Callable[[Floats], Floats], right: Floats, x: Floats, factor: SuperLU) -> Floats:
     """A few preconditioned steps from x towards ``system(x) = right``."""
     residual = right - system(x)
-    limit = PRECISION**2 * float((right**2).sum())
+    limit = _PRECISION**2 * float((right**2).sum())
     direction = np.zeros_like(x)
     last = 1.0
-    for _ in range(STEPS):
+    for _ in range(_STEPS):
         if float((residual**2).sum()) <= limit:
             break
         z = solve(factor, residual)

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from toongeo.geometry.one_thread import one_thread
 
+__all__ = ["ring_rotations"]
+
 
 def ring_rotations(A: sp.csr_matrix, before: NDArray[np.float64], after: NDArray[np.float64]) -> NDArray[np.float64]:
     """Rotations (n, 3, 3) that best take the edges around each vertex to what became of them.

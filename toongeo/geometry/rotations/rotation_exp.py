@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats
 
 __all__ = ["cross_matrix", "right_jacobian", "rotation_exp"]
-
-Floats = NDArray[np.float64]
 
 _SMALL = 1e-2  # rad; below it the closed forms cancel, and four terms of the series are exact to 1e-16
 

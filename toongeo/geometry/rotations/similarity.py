@@ -2,6 +2,10 @@
 
 import numpy as np
 
+from toongeo.geometry.rotations.nearest_rotation import nearest_rotation
+
+__all__ = ["similarity"]
+
 
 def similarity(source: np.ndarray, target: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """Scale, rotation and shift that bring points onto their partners in the least-squares sense (Umeyama 1991).
@@ -27,8 +31,7 @@ def similarity(source: np.ndarray, target: np.ndarray) -> tuple[float, np.ndarra
     """
     centre_source, centre_target = source.mean(0), target.mean(0)
     A, B = source - centre_source, target - centre_target
-    U, singular, Vt = np.linalg.svd(B.T @ A)
-    signs = np.array([1.0, 1.0, np.sign(np.linalg.det(U @ Vt))])  # no reflection
-    rotation = (U * signs) @ Vt
-    scale = float((singular * signs).sum() / (A**2).sum())
+    M = B.T @ A
+    rotation = nearest_rotation(M)
+    scale = float((rotation * M).sum() / (A**2).sum())
     return scale, rotation, centre_target - scale * rotation @ centre_source

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+__all__ = ["COLUMNS", "COMPONENTS", "GlbBuilder", "INDICES", "NO_CHECKSUM", "VERTICES", "checksum_entry"]
+
 # glTF's component types by numpy type, and its element types by number of columns.
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 COLUMNS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}

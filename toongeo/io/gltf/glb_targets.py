@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from toongeo.io.gltf.glb_builder import VERTICES, GlbBuilder
 
+__all__ = ["add_targets"]
+
 
 @dataclass
 class _Rows:

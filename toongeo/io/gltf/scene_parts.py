@@ -6,6 +6,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.colour.srgb import srgb_to_linear
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.io.encode_image import encode_image
 from toongeo.io.gltf.glb_builder import INDICES, VERTICES, GlbBuilder
@@ -13,10 +14,12 @@ from toongeo.io.gltf.glb_targets import add_targets
 from toongeo.io.scene import METRES, Scene, SceneAnimation, SceneMesh
 from toongeo.io.split_seams import split_seams
 
+__all__ = ["GlbOptions", "Picture", "add_scene"]
+
 Picture = Literal["png", "jpeg"]
 
-STEPS = 2048  # of the greatest coordinate, as which displacements are quantized: 0.09 mm of a head
-BYTE = 127  # what 1 is as a normalized integer of 8 bits
+_STEPS = 2048  # of the greatest coordinate, as which displacements are quantized: 0.09 mm of a head
+_BYTE = 127  # what 1 is as a normalized integer of 8 bits
 # Below this a change of a normal cannot be seen: 0.06 degrees.
 _NORMAL_TOLERANCE = 1e-3
 _SAMPLER = {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}  # trilinear, clamped
@@ -70,7 +73,7 @@ def _local(mesh: SceneMesh) -> NDArray[np.floating]:
 def _unit(mesh: SceneMesh) -> float:
     """mm that 1 is as an integer: small, so that none suffers, and so great that most displacements fit a byte."""
     local, targets = np.abs(_local(mesh)).max(), np.zeros(1) if mesh.targets is None else np.abs(mesh.targets)
-    return float(max(local / STEPS, targets.max(initial=0) / np.iinfo(np.int16).max)) or 1.0
+    return float(max(local / _STEPS, targets.max(initial=0) / np.iinfo(np.int16).max)) or 1.0
 
 
 def _primitive(builder: GlbBuilder, mesh: SceneMesh, options: GlbOptions, unit: float | None) -> dict[str, Any]:
@@ -102,7 +105,7 @@ def _primitive(builder: GlbBuilder, mesh: SceneMesh, options: GlbOptions, unit: 
         if options.normal_deltas:
             turned = [(_normals(mesh.vertices + delta, mesh.faces) - base)[vertex] for delta in mesh.targets]
             stored = _normal(np.stack(turned), whole)
-            tolerance = _NORMAL_TOLERANCE * (BYTE if whole else 1)
+            tolerance = _NORMAL_TOLERANCE * (_BYTE if whole else 1)
             turns = add_targets(builder, stored, tolerance, options.sparse, normalized=whole)
             for entry, i in zip(targets, turns, strict=True):
                 entry["NORMAL"] = i
@@ -111,7 +114,7 @@ def _primitive(builder: GlbBuilder, mesh: SceneMesh, options: GlbOptions, unit: 
 
 
 def _normal(array: NDArray[np.floating], whole: bool) -> NDArray:
-    return np.rint(np.clip(array, -1, 1) * BYTE).astype("<i1") if whole else _f4(array)
+    return np.rint(np.clip(array, -1, 1) * _BYTE).astype("<i1") if whole else _f4(array)
 
 
 def _normals(V: NDArray[np.floating], F: NDArray[np.integer]) -> NDArray[np.float64]:
@@ -121,9 +124,7 @@ def _normals(V: NDArray[np.floating], F: NDArray[np.integer]) -> NDArray[np.floa
 
 
 def _material(builder: GlbBuilder, mesh: SceneMesh, textures: dict[bytes, int], picture: Picture) -> int:
-    srgb = np.array(mesh.color)
-    # Factors are linear light (IEC 61966-2-1), textures are sRGB.
-    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    linear = srgb_to_linear(np.array(mesh.color, np.float64))  # factors are linear light, textures are sRGB
     look: dict[str, Any] = {
         "baseColorFactor": [*linear.tolist(), 1.0],
         "metallicFactor": 0.0,

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.io.atomic_write import atomic_write
-from toongeo.io.encode_image import encode_image
 from toongeo.io.scene import Scene, SceneMesh
+from toongeo.io.side_files import check_side_files, marked_picture, side_mark
 
 __all__ = ["write_obj"]
 
 
 def write_obj(path: str | os.PathLike[str], scene: Scene) -> None:
-    """Write ``face.obj``, ``face.mtl`` and the textures ``face.png``, ``face_1.png`` ... beside each other.
+    """Write ``face.obj`` and beside it ``face.mtl`` and the textures ``face_texture.png``, ``face_texture_1.png`` ...
 
     Every mesh is an object; its vertices keep their order and number (no seam is split), in mm and the model
     frame. Coordinates read back as the same floats. Targets, pivots and the animation are left out.
@@ -23,8 +23,9 @@ def write_obj(path: str | os.PathLike[str], scene: Scene) -> None:
     Parameters
     ----------
     path
-        File to write, ``.obj``. Files of the other names are replaced; they have ``_`` for line breaks, with which a
-        name would end inside the ``.obj``, and other characters that are not seen.
+        File to write, ``.obj``. The names of the others have ``_`` for line breaks, with which a name would end inside
+        the ``.obj``, and other characters that are not seen. They bear a mark, and of files that are there under their
+        names only those with the mark of this ``.obj`` are replaced.
     scene
         Meshes with or without uv and texture.
 
@@ -32,27 +33,44 @@ def write_obj(path: str | os.PathLike[str], scene: Scene) -> None:
     ------
     ValueError
         If the suffix is not ``.obj``.
+    FileExistsError
+        If a material or texture would replace a file that was not written for this ``.obj``.
     OSError
         If one of the files cannot be written; then none is.
     """
     path = Path(path)
     if path.suffix.lower() != ".obj":
         raise ValueError(f"path: expected a name that ends in .obj, got {path}")
-    atomic_write(obj_files(path, scene))
-
-
-def obj_files(path: Path, scene: Scene) -> dict[str | os.PathLike[str], bytes]:
-    """The files by path; the ``.obj`` last: whoever sees it sees the files it names."""
-    stem = "".join(letter if letter.isprintable() else "_" for letter in path.stem)
-    pictures: dict[bytes, str] = {}
-    files: dict[str | os.PathLike[str], bytes] = {}
-    materials: list[str] = []
-    for number, mesh in enumerate(scene.meshes):
-        materials += _material(f"material_{number}", mesh, stem, pictures, files, path.parent)
-    files[path.with_name(f"{stem}.mtl")] = ("\n".join(materials) + "\n").encode()
+    files = material_files(path, scene, path.name)
+    check_side_files(files, path.name)
     vertices = ("\n".join(_rows("v", mesh.vertices)) for mesh in scene.meshes)
-    files[path] = obj_text(obj_frames(scene, f"{stem}.mtl"), vertices)
-    return files
+    # The .obj comes last: whoever sees it sees the files it names.
+    atomic_write({**files, path: obj_text(obj_frames(scene, side_paths(path)[0].name), vertices)})
+
+
+def side_paths(path: Path) -> list[Path]:
+    """The files beside an ``.obj`` that every scene with one texture has: its materials and its texture."""
+    stem = _visible(path.stem)
+    return [path.with_name(f"{stem}.mtl"), path.with_name(f"{stem}_texture.png")]
+
+
+def material_files(path: Path, scene: Scene, owner: str) -> dict[str | os.PathLike[str], bytes]:
+    """Textures and materials beside an ``.obj``, with the mark of their owner."""
+    library, texture = side_paths(path)
+    pictures: dict[bytes, Path] = {}
+    files: dict[str | os.PathLike[str], bytes] = {}
+    materials = [f"# {side_mark(owner)}"]
+    for number, mesh in enumerate(scene.meshes):
+        materials += [f"newmtl material_{number}", f"Kd {' '.join(map(repr, mesh.color))}"]
+        materials += ["Ks 0 0 0", "d 1", "illum 1"]
+        if mesh.texture is None:
+            continue
+        key = str(mesh.texture.shape).encode() + mesh.texture.tobytes()
+        if key not in pictures:
+            pictures[key] = texture.with_stem(f"{texture.stem}_{len(pictures)}") if pictures else texture
+            files[pictures[key]] = marked_picture(mesh.texture, owner)
+        materials.append(f"map_Kd {pictures[key].name}")
+    return {**files, library: ("\n".join(materials) + "\n").encode()}
 
 
 def obj_text(frames: Iterable[tuple[str, str]], vertices: Iterable[str]) -> bytes:
@@ -92,22 +110,8 @@ def _rows(keyword: str, array: NDArray[np.floating]) -> Iterator[str]:
         yield f"{keyword} {' '.join(map(repr, row))}"
 
 
-def _material(
-    name: str,
-    mesh: SceneMesh,
-    stem: str,
-    pictures: dict[bytes, str],
-    files: dict[str | os.PathLike[str], bytes],
-    folder: Path,
-) -> list[str]:
-    lines = [f"newmtl {name}", f"Kd {' '.join(map(repr, mesh.color))}", "Ks 0 0 0", "d 1", "illum 1"]
-    if mesh.texture is not None:
-        key = str(mesh.texture.shape).encode() + mesh.texture.tobytes()
-        if key not in pictures:
-            pictures[key] = f"{stem}_{len(pictures)}.png" if pictures else f"{stem}.png"
-            files[folder / pictures[key]] = encode_image(mesh.texture)
-        lines.append(f"map_Kd {pictures[key]}")
-    return lines
+def _visible(name: str) -> str:
+    return "".join(letter if letter.isprintable() else "_" for letter in name)
 
 
 def _token(name: str) -> str:

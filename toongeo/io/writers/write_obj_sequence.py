@@ -9,15 +9,17 @@ from numpy.typing import NDArray
 
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.scene import Scene
-from toongeo.io.writers.write_obj import obj_files, obj_frames, obj_text
+from toongeo.io.side_files import check_side_files, side_mark
+from toongeo.io.writers.write_obj import material_files, obj_frames, obj_text
 
-__all__ = ["write_obj_sequence"]
+__all__ = ["SEQUENCE", "write_obj_sequence"]
 
+SEQUENCE = "a sequence of OBJ files"  # that the files of the folder were written for
 _DECIMALS = 5  # of a mm, as float32 has at the crown of a head
 
 
 def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: str = "face") -> None:
-    """Write ``000_neutral.obj`` and ``001_jawOpen.obj`` ... for every target, with one ``.mtl`` and its textures.
+    """Write ``000_neutral.obj`` and ``001_jawOpen.obj`` ... for every target, ``face.mtl`` and ``face_texture.png`` ...
 
     All files have the same vertices and faces in the same order, so programs can blend between them. Of a target that
     several meshes have, all move. Coordinates are rounded to 1e-5 mm. Characters of names that are not letters, digits,
@@ -26,7 +28,8 @@ def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: st
     Parameters
     ----------
     folder
-        Is made if it is not there; files of the same names in it are replaced.
+        Is made if it is not there. All files in it bear a mark, and of those that are there under their names only
+        marked ones are replaced.
     scene
         Model frame, mm.
     stem
@@ -36,6 +39,8 @@ def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: st
     ------
     ValueError
         If the stem is not of letters, digits, ``-`` and ``_``.
+    FileExistsError
+        If a file of one of the names is there that no such sequence has.
     OSError
         If the folder cannot be made or a file cannot be written; then none is.
 
@@ -52,10 +57,12 @@ def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: st
     if not re.fullmatch(r"[\w-]+", stem, re.ASCII):
         raise ValueError(f"stem: expected letters, digits, - and _, got {stem!r}")
     folder = Path(folder)
+    files = _files(folder, scene, stem)
+    check_side_files(files, SEQUENCE)
     new = not folder.exists()
     try:
         folder.mkdir(exist_ok=True)
-        atomic_write(_files(folder, scene, stem))
+        atomic_write(files)
     except OSError as error:
         if new and folder.is_dir():
             folder.rmdir()
@@ -63,15 +70,15 @@ def write_obj_sequence(folder: str | os.PathLike[str], scene: Scene, *, stem: st
 
 
 def _files(folder: Path, scene: Scene, stem: str) -> dict[str | os.PathLike[str], bytes]:
-    files = obj_files(folder / f"{stem}.obj", scene)
-    files.pop(folder / f"{stem}.obj")
+    files = material_files(folder / f"{stem}.obj", scene, SEQUENCE)
     frames = obj_frames(scene, f"{stem}.mtl")
     names = list(dict.fromkeys(name for mesh in scene.meshes for name in mesh.target_names))
     for number, name in enumerate(["neutral", *names]):
         weights = {} if number == 0 else {name: 1.0}
         safe = re.sub(r"[^\w-]", "_", name, flags=re.ASCII)[:80]
         lines = (_vertices(mesh.moved(weights)) for mesh in scene.meshes)
-        files[folder / f"{number:03}_{safe}.obj"] = obj_text(frames, lines)
+        text = obj_text(frames, lines)
+        files[folder / f"{number:03}_{safe}.obj"] = f"# {side_mark(SEQUENCE)}\n".encode() + text
     return files
 
 

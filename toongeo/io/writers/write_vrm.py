@@ -19,10 +19,10 @@ from toongeo.io.writers.vrm_meta import VrmMeta
 
 __all__ = ["write_vrm"]
 
-EYES = {"leftEye": ("LeftEye", "eye_left"), "rightEye": ("RightEye", "eye_right")}
-GROUND_MM = 1580.0  # of a standing adult: from the ground to the eyes
+_EYES = {"leftEye": ("LeftEye", "eye_left"), "rightEye": ("RightEye", "eye_right")}
+_GROUND_MM = 1580.0  # of a standing adult: from the ground to the eyes
 # The names that VRM gives a meaning; all others are the user's own.
-PRESETS = (
+_PRESETS = (
     *(
         "happy",
         "angry",
@@ -83,7 +83,7 @@ def write_vrm(
         If the path cannot be written; nothing half-written remains.
     """
     names = {mesh.name: number for number, mesh in enumerate(scene.meshes)}
-    for _, eye in EYES.values():
+    for _, eye in _EYES.values():
         if eye not in names or scene.meshes[names[eye]].pivot is None:
             raise ValueError(f"scene: expected a mesh {eye!r} with a pivot, got {', '.join(names)}")
     binds = {name: _binds(scene, name, weights) for name, weights in expressions.items()}
@@ -92,7 +92,7 @@ def write_vrm(
     add_scene(builder, still, GlbOptions(normal_deltas=normal_deltas, tolerance_mm=tolerance_mm, picture=picture))
     bones = _add_bones(builder, scene)
     head = _bones()["Head"][2]
-    middle = np.mean([_pivot(scene, eye) for _, eye in EYES.values()], axis=0)
+    middle = np.mean([_pivot(scene, eye) for _, eye in _EYES.values()], axis=0)
     builder.use("VRMC_vrm")
     builder.json["extensions"] = {
         "VRMC_vrm": {
@@ -100,8 +100,8 @@ def write_vrm(
             "meta": (meta or VrmMeta()).entry(),
             "humanoid": {"humanBones": {bone: {"node": node} for bone, node in bones.items()}},
             "expressions": {
-                "preset": {name: entry for name, entry in binds.items() if name in PRESETS},
-                "custom": {name: entry for name, entry in binds.items() if name not in PRESETS},
+                "preset": {name: entry for name, entry in binds.items() if name in _PRESETS},
+                "custom": {name: entry for name, entry in binds.items() if name not in _PRESETS},
             },
             "lookAt": _look_at((middle - head) * METRES, *gaze_degrees),
         }
@@ -144,9 +144,9 @@ def _add_bones(builder: GlbBuilder, scene: Scene) -> dict[str, int]:
     places: dict[str, NDArray[np.floating]] = {}
     by_name, humanoid = {}, {}
     rows: list[tuple[str, str, str, NDArray[np.floating]]] = [(name, *row) for name, row in _bones().items()]
-    rows += [(name, bone, "Head", _pivot(scene, eye)) for bone, (name, eye) in EYES.items()]
+    rows += [(name, bone, "Head", _pivot(scene, eye)) for bone, (name, eye) in _EYES.items()]
     for name, bone, parent, place in rows:
-        above = places.get(parent, np.array([0.0, -GROUND_MM, 0.0]))
+        above = places.get(parent, np.array([0.0, -_GROUND_MM, 0.0]))
         index = builder.add("nodes", name=name, translation=((place - above) * METRES).tolist())
         places[name], by_name[name], humanoid[bone] = place, index, index
         if parent:
@@ -164,7 +164,7 @@ def _add_skin(
     inverse[:, 3, :3] = -np.array(list(places.values())) * METRES  # a row is a column of the matrix in the file
     matrices = builder.accessor(inverse.reshape(-1, 16))
     skin = builder.add("skins", inverseBindMatrices=matrices, joints=[nodes[name] for name in places])
-    hanging = {eye: name for name, eye in EYES.values()}
+    hanging = {eye: name for name, eye in _EYES.values()}
     for node, mesh in enumerate(scene.meshes):
         attributes = builder.json["meshes"][node]["primitives"][0]["attributes"]
         count = builder.json["accessors"][attributes["POSITION"]]["count"]

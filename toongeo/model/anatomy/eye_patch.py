@@ -9,6 +9,8 @@ from toongeo._read_only import read_only
 from toongeo.geometry import LaplacianAligner, laplacian_align
 from toongeo.model import MorphableModel
 
+__all__ = ["EyePatch", "eye_patch", "sagitta"]
+
 
 @dataclass(frozen=True, eq=False)
 class EyePatch:

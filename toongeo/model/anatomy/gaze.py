@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
+__all__ = ["GAZE_NAMES", "TURN", "gaze_names", "gaze_rotation", "gaze_weights"]
+
 # Degrees sideways, and up or down, at weight 1; about the range in which a person's eyes move without the head.
 TURN = (30.0, 25.0)
-DIRECTIONS = ("In", "Out", "Up", "Down")
+_DIRECTIONS = ("In", "Out", "Up", "Down")
 
 
 def gaze_names(side: str) -> tuple[str, ...]:
@@ -19,7 +21,7 @@ def gaze_names(side: str) -> tuple[str, ...]:
     >>> gaze_names("left")
     ('eyeLookInLeft', 'eyeLookOutLeft', 'eyeLookUpLeft', 'eyeLookDownLeft')
     """
-    return tuple(f"eyeLook{direction}{side.capitalize()}" for direction in DIRECTIONS)
+    return tuple(f"eyeLook{direction}{side.capitalize()}" for direction in _DIRECTIONS)
 
 
 def gaze_rotation(side: str, weights: Mapping[str, float], turn: ArrayLike = TURN) -> np.ndarray:

@@ -6,10 +6,13 @@ from functools import lru_cache
 import numpy as np
 
 from toongeo._read_only import read_only
+from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import opening_rim, rim_path
 
-ROWS = 3  # from the inner edge of the lids' margin to the outer one, where the lashes grow
+__all__ = ["LidRings", "lid_rings", "opening_height"]
+
+_ROWS = 3  # from the inner edge of the lids' margin to the outer one, where the lashes grow
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +38,11 @@ class LidRings:
     def vertices(self) -> np.ndarray:
         """All of them, sorted, none twice."""
         return np.union1d(self.upper, self.lower)
+
+
+def lids_of(side: str) -> tuple[str, ...]:
+    """What a model must have for :func:`lid_rings` of the "left" or "right" eye."""
+    return "quads", f"eye_{side}", f"socket_{side}"
 
 
 @lru_cache(maxsize=8)
@@ -63,10 +71,10 @@ def lid_rings(model: MorphableModel, side: str) -> LidRings:
         neighbours.setdefault(b, set()).add(a)
     rows = [_loop({v: sorted(neighbours.get(v, set()) & set(rim.tolist())) for v in rim.tolist()})]
     taken = set(np.flatnonzero(model.region(f"socket_{side}")).tolist()) | set(rim.tolist())
-    while len(rows) < ROWS:
+    while len(rows) < _ROWS:
         outwards = [neighbours.get(v, set()) - taken for v in rows[-1]]
         if len(rows[-1]) != len(rim) or any(len(found) != 1 for found in outwards):
-            raise ValueError(f"model: expected {ROWS} rings of quads around socket_{side}")
+            raise ValueError(f"model: expected {_ROWS} rings of quads around socket_{side}")
         rows.append([found.pop() for found in outwards])
         taken |= set(rows[-1])
     rings = np.array(rows)
@@ -80,17 +88,6 @@ def lid_rings(model: MorphableModel, side: str) -> LidRings:
     return LidRings(*(np.ascontiguousarray(half) for half in halves))
 
 
-def along(path: np.ndarray) -> np.ndarray:
-    """Length along a path of points (k, d) up to each, as a share (k,) of the whole."""
-    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
-    return np.asarray(length / length[-1])
-
-
-def at_shares(shares: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Rows (k, d), at shares (k,) of a path, of values (m, d) that are given at others (m,)."""
-    return np.column_stack([np.interp(shares, known, column) for column in values.T])
-
-
 def opening_height(upper: np.ndarray, lower: np.ndarray) -> float:
     """Greatest distance of points at the same share of an upper (k, 3) and a lower rim (m, 3).
 
@@ -99,7 +96,7 @@ def opening_height(upper: np.ndarray, lower: np.ndarray) -> float:
     >>> opening_height(np.array([[-2.0, 0, 0], [0, 2, 0], [2, 0, 0]]), np.array([[-2.0, 0, 0], [0, -1, 0], [2, 0, 0]]))
     3.0
     """
-    return float(np.linalg.norm(upper - at_shares(along(upper), along(lower), lower), axis=1).max())
+    return float(np.linalg.norm(upper - interpolated(arc_shares(upper), arc_shares(lower), lower), axis=1).max())
 
 
 def _loop(along: dict[int, list[int]]) -> list[int]:

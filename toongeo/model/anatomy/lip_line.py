@@ -12,10 +12,12 @@ from toongeo.geometry.operators.factor import factor_spd, solve
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import opening_rim
 
-REACH_MM = 38.0  # on the template: how far from the line the face follows
-RED_MM = 5.0  # on the template: how far from the line a lip may come upon the other
-CLAMP = 1e-2  # least weight of an edge
-TENSION = 0.02  # 1/mm^2, of the plate: without it, a slope at the corner of the mouth would carry on beyond it
+__all__ = ["LipLine", "lip_line"]
+
+_REACH_MM = 38.0  # on the template: how far from the line the face follows
+_RED_MM = 5.0  # on the template: how far from the line a lip may come upon the other
+_CLAMP = 1e-2  # least weight of an edge
+_TENSION = 0.02  # 1/mm^2, of the plate: without it, a slope at the corner of the mouth would carry on beyond it
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,17 +51,6 @@ class LipLine:
     spread: np.ndarray
 
 
-def along(path: np.ndarray) -> np.ndarray:
-    """Length along a path of points (k, 3) up to each, as a share of the whole."""
-    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
-    return np.asarray(length / length[-1])
-
-
-def interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Points (k, 3) at the shares `at` (k,), between values (j, 3) at the `known` ones (j,)."""
-    return np.column_stack([np.interp(at, known, values[:, axis]) for axis in range(values.shape[1])])
-
-
 @lru_cache(maxsize=4)
 def lip_line(model: MorphableModel) -> LipLine:
     """The line where the lips of a model meet.
@@ -75,16 +66,16 @@ def lip_line(model: MorphableModel) -> LipLine:
     upper, lower = _sides(model)
     vertices = np.r_[upper, lower[1:-1]]
     soft = model.region("skin") | model.region("mouth_cavity")
-    near = cKDTree(model.mean[vertices]).query(model.mean)[0] < REACH_MM
+    near = cKDTree(model.mean[vertices]).query(model.mean)[0] < _REACH_MM
     # The nose stays: its underside would be drawn down with the upper lip.
     free = np.setdiff1d(np.flatnonzero(soft & near & ~model.region("nose")), vertices)
     around = (soft & near)[model.faces].any(1)
     used, faces = np.unique(model.faces[around & soft[model.faces].all(1)], return_inverse=True)
     V, F = model.mean[used], faces.reshape(-1, 3)
-    stiffness = cotangent_laplacian(V, F, clamp=CLAMP)
+    stiffness = cotangent_laplacian(V, F, clamp=_CLAMP)
     area = np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1)
     mass = np.bincount(F.ravel(), np.repeat(area, 3), minlength=len(V)) / 6
-    plate = sp.csr_matrix(stiffness @ sp.diags_array(1 / mass) @ stiffness + TENSION * stiffness)
+    plate = sp.csr_matrix(stiffness @ sp.diags_array(1 / mass) @ stiffness + _TENSION * stiffness)
     inner, given = np.searchsorted(used, free), np.searchsorted(used, vertices)
     spread = solve(factor_spd(plate[inner][:, inner]), -plate[inner][:, given].toarray())
     red, column = zip(_red(model, upper, lower), _red(model, lower, upper), strict=True)
@@ -96,7 +87,7 @@ def _red(model: MorphableModel, path: np.ndarray, other: np.ndarray) -> tuple[np
     """Skin (r,) that is near one path and farther from the other, and the nearest position on the path (r,)."""
     skin = np.setdiff1d(np.flatnonzero(model.region("face")), np.r_[path, other])
     distance, column = cKDTree(model.mean[path]).query(model.mean[skin])
-    red = (distance < RED_MM) & (distance < cKDTree(model.mean[other]).query(model.mean[skin])[0])
+    red = (distance < _RED_MM) & (distance < cKDTree(model.mean[other]).query(model.mean[skin])[0])
     return skin[red], column[red]
 
 

@@ -6,7 +6,9 @@ import numpy as np
 
 from toongeo.model import MorphableModel
 
-MOVES_MM = 0.05  # what moves less than this in every expression is held still
+__all__ = ["still_vertices"]
+
+_MOVES_MM = 0.05  # what moves less than this in every expression is held still
 
 
 @lru_cache(maxsize=4)
@@ -21,7 +23,7 @@ def still_vertices(model: MorphableModel) -> np.ndarray:
     >>> bool(model.region("scalp")[still].any()), bool(model.region("lips")[still].any())
     (True, False)
     """
-    motion = np.abs(model.expression[: model.n_named]).max(axis=(0, 2))
-    still = np.flatnonzero(motion < MOVES_MM)
+    motion = np.abs(model.expression[: model.n_named]).max(axis=(0, 2), initial=0.0)
+    still = np.flatnonzero(motion < _MOVES_MM)
     still.setflags(write=False)
     return still

@@ -7,6 +7,8 @@ from toongeo.model import MorphableModel
 from toongeo.model.ibug68 import PARTS
 from toongeo.protocols import HeadCamera
 
+__all__ = ["visible_contour"]
+
 
 def visible_contour(
     model: MorphableModel, camera: HeadCamera, V: np.ndarray, landmark_vertices: np.ndarray

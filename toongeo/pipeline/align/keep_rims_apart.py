@@ -1,4 +1,7 @@
-"""Upper and lower lids and lips that keep their order where their landmarks touch or cross."""
+"""Upper and lower lids and lips that keep their order where their landmarks touch or cross.
+
+Constants were judged on the seven examples and 15 caricatures (``benchmarks/alignment.py``, ``benchmarks/lips.py``).
+"""
 
 import numpy as np
 
@@ -6,13 +9,15 @@ from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import rim_path
 from toongeo.protocols import HeadCamera
 
-PAIRS = (
+__all__ = ["GAP_MM", "keep_rims_apart"]
+
+_PAIRS = (
     ("lid_upper_right", "lid_lower_right"),
     ("lid_upper_left", "lid_lower_left"),
     ("lip_upper_inner", "lip_lower_inner"),
 )
 GAP_MM = 0.3  # at most asked for between rims, in the picture or else in depth
-SPREAD_MM = 8.0  # over which a shift in depth fades out along the rim
+_SPREAD_MM = 8.0  # over which a shift in depth fades out along the rim
 
 
 def keep_rims_apart(
@@ -49,7 +54,7 @@ def keep_rims_apart(
     px[anchors] = targets_px
     free = np.zeros(len(V), bool)
     free[anchors[~given]] = True
-    for upper_name, lower_name in PAIRS:
+    for upper_name, lower_name in _PAIRS:
         upper, lower = rim_path(model, upper_name), rim_path(model, lower_name)
         mm = np.sqrt((camera.jacobian(V[upper]) ** 2).mean() * 3)  # pixels
         along = px[upper[-1]] - px[upper[0]]
@@ -80,4 +85,4 @@ def _height(px: np.ndarray, rim: np.ndarray, other: np.ndarray, along: np.ndarra
 
 def _spread(place: np.ndarray, lack: np.ndarray) -> np.ndarray:
     """The least that is enough at each place (mm) along a rim and fades out around it."""
-    return (lack * np.exp(-(((place[:, None] - place) / SPREAD_MM) ** 2))).max(1)
+    return (lack * np.exp(-(((place[:, None] - place) / _SPREAD_MM) ** 2))).max(1)

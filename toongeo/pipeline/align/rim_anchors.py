@@ -3,9 +3,12 @@
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
+from toongeo.geometry.polyline import arc_length
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import rim_paths
 from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS
+
+__all__ = ["rim_anchors"]
 
 
 def rim_anchors(model: MorphableModel, displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -34,7 +37,7 @@ def rim_anchors(model: MorphableModel, displacement: np.ndarray) -> tuple[np.nda
         known = [i for i, landmark in enumerate(rim) if seen[landmark]]
         if len(known) < 2:
             continue
-        length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(model.mean[path], axis=0), axis=1))]
+        length = arc_length(model.mean[path])
         values = displacement[[rim[i] for i in known]]
         interpolator = CubicSpline if name in LID_RIMS and len(known) > 2 else PchipInterpolator
         first, last = knots[known[0]], knots[known[-1]]

@@ -1,9 +1,14 @@
-"""Teeth and tongue that were carried along by a flow, as parts that do not bend."""
+"""Teeth and tongue that were carried along by a flow, as parts that do not bend.
+
+Constants were judged on the seven examples and 15 caricatures (``benchmarks/alignment.py``, ``benchmarks/lips.py``).
+"""
 
 import numpy as np
 
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import rim_path
+
+__all__ = ["PARTS", "PARTS_OF_RIM", "STRETCH", "straighten_teeth"]
 
 # What hangs on the upper lip's side of the mouth, and what on the lower one's.
 PARTS_OF_RIM = {"lip_upper_inner": ("teeth_upper",), "lip_lower_inner": ("teeth_lower", "tongue")}
@@ -26,9 +31,11 @@ def straighten_teeth(model: MorphableModel, before: np.ndarray, after: np.ndarra
     Returns
     -------
     (n, 3) float64
-        ``after``, with teeth and tongue straightened.
+        ``after``, with teeth and tongue straightened, as far as the model has them.
     """
     inside = np.any([model.region(name) for name in PARTS], axis=0)
+    if not inside.any():
+        return after
     centre, arrived = before[inside].mean(0), after[inside].mean(0)
     linear, *_ = np.linalg.lstsq(before[inside] - centre, after[inside] - arrived, rcond=None)
     U, stretches, Vt = np.linalg.svd(linear)

@@ -1,4 +1,7 @@
-"""A face moved most of the way to its landmarks without a fold."""
+"""A face moved most of the way to its landmarks without a fold.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/alignment.py``).
+"""
 
 from typing import Literal
 
@@ -10,9 +13,11 @@ from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.pipeline.align.symmetric_field import FieldPrior, most_likely_field
 from toongeo.protocols import HeadCamera
 
-STRIDE = 0.1  # outer-eye distances; the farthest landmark goes so far in a step
-LEAST_STEPS, MOST_STEPS = 2, 5
-PRIOR = FieldPrior()
+__all__ = ["symmetric_flow"]
+
+_STRIDE = 0.1  # outer-eye distances; the farthest landmark goes so far in a step
+_LEAST_STEPS, _MOST_STEPS = 2, 5  # the points of the jaw are placed anew after each
+_PRIOR = FieldPrior()
 
 
 def symmetric_flow(
@@ -50,15 +55,15 @@ def symmetric_flow(
     """
     seen = np.isfinite(landmarks).all(1)
     unit = float(np.linalg.norm(np.subtract(*V[model.landmarks[list(OUTER_EYES)]])))
-    left = LEAST_STEPS
-    for step in range(MOST_STEPS + 1):
+    left = _LEAST_STEPS
+    for step in range(_MOST_STEPS + 1):
         at = landmark_vertices[seen]
         jacobians = camera.jacobian(V[at]) * unit
         px = np.sqrt((jacobians**2).mean() * 3)  # of a unit across the view
         missed = (landmarks[seen] - camera.project(V[at])) / px
         if step == 0:
-            left = int(np.clip(np.ceil(np.abs(missed).max() / STRIDE), LEAST_STEPS, MOST_STEPS))
-        moved = V + unit * most_likely_field(V / unit, V[at] / unit, jacobians / px, missed / max(left, 1), PRIOR)
+            left = int(np.clip(np.ceil(np.abs(missed).max() / _STRIDE), _LEAST_STEPS, _MOST_STEPS))
+        moved = V + unit * most_likely_field(V / unit, V[at] / unit, jacobians / px, missed / max(left, 1), _PRIOR)
         V = moved if depth == "scaled" else camera.unproject(camera.project(moved), camera.depth(V))
         left -= 1
         if left < 0:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.landmark_basis import LandmarkBasis, landmark_basis
 from toongeo.model.anatomy.visible_landmarks import visible_landmarks
@@ -19,9 +20,7 @@ from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["RidgeRegressor", "train_ridge_regressor"]
 
-Floats = NDArray[np.float64]
-
-_FEWEST = 6
+_FEWEST = 6  # points overdetermine the pose
 _IDENTITY_DEVIATION = 0.7  # of the faces it learns from, standard deviations
 _EXPRESSIONS, _STRONGEST = 4, 0.8  # named expressions at once, and their largest weight
 _YAW, _PITCH = 35.0, 15.0  # degrees

@@ -1,4 +1,7 @@
-"""GrabCut, from what is known, likely and unlikely."""
+"""GrabCut, from what is known, likely and unlikely.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["cut_out"]
+from toongeo.arrays import Mask
 
-Mask = NDArray[np.bool_]
+__all__ = ["cut_out"]
 
 _PASSES = 2
 _FEWEST = 16  # px that either side needs for its five Gaussians

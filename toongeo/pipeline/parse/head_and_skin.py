@@ -1,18 +1,25 @@
-"""A head cut out of its picture, and the skin cut out of the head."""
+"""A head cut out of its picture, and the skin cut out of the head.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from skimage.morphology import remove_small_holes
 
+from toongeo.arrays import Mask
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.cut_out import cut_out
 from toongeo.pipeline.parse.face_zones import FaceZones
-from toongeo.pipeline.parse.masks import Mask, grown
+from toongeo.pipeline.parse.guided_filter import guided_filter
+from toongeo.pipeline.parse.masks import grown
 from toongeo.pipeline.parse.skin_surface import colour_mode, skin_surface
 from toongeo.pipeline.parse.working_view import WorkingView
 
@@ -152,15 +159,13 @@ def _one_piece(mask: Mask, core: Mask) -> Mask:
     kept[np.unique(pieces[core])] = True
     kept[0] = False
     whole = kept[pieces]
-    _, holes, stats, _ = cv2.connectedComponentsWithStats((~whole).astype(np.uint8), connectivity=4)
-    small = stats[:, cv2.CC_STAT_AREA] < 0.02 * max(int(core.sum()), 1)
-    small[0] = False
-    return whole | small[holes]
+    largest = math.ceil(0.02 * max(int(core.sum()), 1)) - 1  # below a fiftieth of the core
+    return np.asarray(remove_small_holes(whole, max_size=largest), np.bool_)
 
 
 def _trust(view: WorkingView, mask: Mask) -> NDArray[np.float32]:
     """1 where an edge-aware filter leaves the mask as it is, 0 where it leaves a half."""
     radius = max(2, round(2 * _EDGE * view.head))
-    guide = view.pixels.astype(np.float32) / 255
-    soft = cv2.ximgproc.guidedFilter(guide, mask.astype(np.float32), radius, _SOFTNESS)
+    guide = view.pixels.astype(np.float32) / np.float32(255)
+    soft = guided_filter(guide, mask.astype(np.float32), radius, _SOFTNESS)
     return np.clip(np.abs(2 * soft - 1), 0, 1) * ((soft > 0.5) == mask)

@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Mask", "filled", "grown", "signed_distance"]
+from toongeo.arrays import Mask
 
-Mask = NDArray[np.bool_]
+__all__ = ["Mask", "filled", "grown", "signed_distance"]
 
 
 def filled(shape: tuple[int, ...], polygon: NDArray[np.floating]) -> Mask:

@@ -1,4 +1,7 @@
-"""The colour of skin in one picture, which changes slowly over the face."""
+"""The colour of skin in one picture, which changes slowly over the face.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SkinSurface", "colour_mode", "skin_surface"]
+from toongeo.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["SkinSurface", "colour_mode", "skin_surface"]
 
 _PASSES = 6
 _TIGHTEST, _LOOSEST = 4.0, 14.0  # Lab units: what skin may scatter

@@ -1,4 +1,7 @@
-"""The surroundings of a head, always of about the same size, in which a picture is parsed."""
+"""The surroundings of a head, always of about the same size, in which a picture is parsed.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +11,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["WorkingView", "working_view"]
+from toongeo.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["WorkingView", "working_view"]
 
 _MARGIN = 0.5  # of the head's size, on all sides: so far its hair is looked for
 

@@ -5,7 +5,9 @@ from scipy.linalg.blas import saxpy
 
 from toongeo.geometry.one_thread import one_thread
 
-MANY = 0.6  # share of rows from which one product over all of them is faster than adding those that have weight
+__all__ = ["add_rows"]
+
+_MANY = 0.6  # share of rows from which one product over all of them is faster than adding those that have weight
 
 
 def add_rows(total: np.ndarray, rows: np.ndarray, weights: np.ndarray) -> None:
@@ -26,7 +28,7 @@ def add_rows(total: np.ndarray, rows: np.ndarray, weights: np.ndarray) -> None:
     array([7., 9.], dtype=float32)
     """
     active = np.flatnonzero(weights)
-    if len(active) > MANY * len(rows):
+    if len(active) > _MANY * len(rows):
         span = slice(active[0], active[-1] + 1)
         with one_thread():
             total += weights[span].astype(np.float32) @ rows[span]

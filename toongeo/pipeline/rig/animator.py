@@ -7,12 +7,13 @@ import numpy as np
 
 from toongeo.geometry import vertex_normals
 from toongeo.model.anatomy.gaze import GAZE_NAMES
-from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.rig.add_rows import add_rows
 from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.rig import Rig
 
-Weights = Mapping[str, float] | np.ndarray | None
+__all__ = ["Animator", "Rigged"]
+
+_Weights = Mapping[str, float] | np.ndarray | None
 
 
 class Rigged(Protocol):
@@ -40,7 +41,7 @@ class Animator:
     ----------
     avatar : Avatar
     limits : (low, high) or None
-        Weights are brought into this range: trackers overshoot. The templates are made for [0, 1]; caricatures take
+        _Weights are brought into this range: trackers overshoot. The templates are made for [0, 1]; caricatures take
         (0, 1.5). None leaves them as they are.
 
     Raises
@@ -73,7 +74,7 @@ class Animator:
         """Names of the (54,) weights: the expressions of the rig, then the eight ``eyeLook*`` directions."""
         return (*self.rig.names, *GAZE_NAMES)
 
-    def frame(self, weights: Weights = None, *, out: np.ndarray | None = None) -> np.ndarray:
+    def frame(self, weights: _Weights = None, *, out: np.ndarray | None = None) -> np.ndarray:
         """Vertices (n, 3) float32 of the head, mm, model frame.
 
         Parameters
@@ -105,12 +106,11 @@ class Animator:
         """Unit normals (n, 3) float64 of a frame (n, 3); they cost more than the frame."""
         return vertex_normals(vertices, self.faces)
 
-    def eye_frames(self, weights: Weights = None) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices (k, 3) float64, mm, of the left and of the right eyeball; weights as for :meth:`frame`."""
+    def eye_frames(self, weights: _Weights = None) -> tuple[np.ndarray, ...]:
+        """Vertices (k, 3) float64, mm, of the left and of the right eyeball, if any; weights as for :meth:`frame`."""
         gaze = dict(zip(GAZE_NAMES, self._limited(weights)[len(self.rig.names) :].tolist(), strict=True))
-        left, right = (self.eyes.looking(side, gaze) for side in range(len(SIDES)))
-        return left, right
+        return tuple(self.eyes.looking(side, gaze) for side in range(len(self.eyes.templates)))
 
-    def _limited(self, weights: Weights) -> np.ndarray:
+    def _limited(self, weights: _Weights) -> np.ndarray:
         beta = self.rig.weights(weights)
         return beta if self.limits is None else beta.clip(*self.limits)

@@ -6,7 +6,9 @@ from scipy.optimize import lsq_linear
 from toongeo.geometry.one_thread import one_thread
 from toongeo.pipeline.rig.rig import Rig
 
-RIDGE = 1e-6  # of the mean square of the blendshapes: decides between expressions that do the same
+__all__ = ["fit_pose"]
+
+_RIDGE = 1e-6  # of the mean square of the blendshapes: decides between expressions that do the same
 
 
 def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
@@ -22,7 +24,7 @@ def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
     Returns
     -------
     (k,) float64
-        All 0 where the vertices are the neutral face.
+        All 0 where the vertices are the neutral face, or no expression moves it.
 
     Raises
     ------
@@ -31,13 +33,13 @@ def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
     """
     if vertices.shape != rig.neutral.shape:
         raise ValueError(f"vertices: expected shape {rig.neutral.shape} as the rig has, got {vertices.shape}")
-    B = np.ascontiguousarray(rig.deltas[:, where]).reshape(len(rig.names), -1)
+    B = np.ascontiguousarray(rig.deltas[:, where]).reshape(len(rig.names), 3 * np.count_nonzero(where))
     motion = (vertices - rig.neutral)[where].ravel()
-    if not motion.any():
+    if not (motion.any() and B.any()):
         return np.zeros(len(rig.names))
     with one_thread():
         gram, right = (B @ B.T).astype(np.float64), (B @ motion.astype(np.float32)).astype(np.float64)
         # The normal equations hold all of the problem: with a root of the Gram matrix it is one of 46 rows.
-        root = np.linalg.cholesky(gram + RIDGE * np.trace(gram) * np.eye(len(gram)))
+        root = np.linalg.cholesky(gram + _RIDGE * np.trace(gram) * np.eye(len(gram)))
         solution = lsq_linear(root.T, np.linalg.solve(root, right), bounds=(0.0, 1.0), method="bvls")
     return np.asarray(solution.x)

@@ -1,10 +1,14 @@
-"""A face without the expression of its picture."""
+"""A face without the expression of its picture.
+
+Constants were judged on the seven examples (``benchmarks/rig.py``).
+"""
 
 import dataclasses
 
 import numpy as np
 
 from toongeo.geometry import DeformationTransfer, laplacian_align
+from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import rim_path
 from toongeo.model.anatomy.still_vertices import still_vertices
@@ -12,9 +16,11 @@ from toongeo.model.expression_features import REMOVED, SIGNS
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
 
-SURE = (0.3, 0.6)  # weights of a sign from which an expression begins to be removed, and is removed wholly
-PARTED = (0.1, 0.2)  # the same for the gap between the lips, in widths of the mouth
-WEIGHT = 1e3  # of the anchors on the lips: they are met to about a hundredth of a millimetre
+__all__ = ["neutral_face"]
+
+_SURE = (0.3, 0.6)  # weights of a sign from which an expression begins to be removed, and is removed wholly
+_PARTED = (0.1, 0.2)  # the same for the gap between the lips, in widths of the mouth
+_WEIGHT = 1e3  # of the anchors on the lips: they are met to about a hundredth of a millimetre
 
 
 def neutral_face(face: AlignedFace) -> AlignedFace:
@@ -49,7 +55,9 @@ def neutral_face(face: AlignedFace) -> AlignedFace:
     transfer = DeformationTransfer(
         face.fit.vertices, model.faces, face.vertices, pinned=still_vertices(model), align=True
     )
-    V = _lips_as(model, fit.vertices, transfer(fit.vertices), share)
+    V = transfer(fit.vertices)
+    if model.has("mouth"):
+        V = _lips_as(model, fit.vertices, V, share)
     return dataclasses.replace(face, vertices=keep_teeth_inside(model, V), fit=fit)
 
 
@@ -57,14 +65,14 @@ def _by_signs(model: MorphableModel, expression: np.ndarray) -> float:
     """How much of the expression is to go, in [0, 1], by its strongest sign; 0 for a model that has none of them."""
     weights = dict(zip(model.expression_names, expression.tolist(), strict=True))
     strongest = max(float(np.mean([weights.get(name, 0.0) for name in names])) for names in SIGNS.values())
-    return _ramp(strongest, SURE)
+    return _ramp(strongest, _SURE)
 
 
 def _by_gap(model: MorphableModel, V: np.ndarray) -> float:
     """The same by how far the lips are parted: drawings open mouths in ways that no expression of the model has."""
     upper, lower = rim_path(model, "lip_upper_inner"), rim_path(model, "lip_lower_inner")
     gap = np.linalg.norm(V[upper][:, None] - V[lower], axis=2).min(1).max()
-    return _ramp(float(gap / np.linalg.norm(V[upper[-1]] - V[upper[0]])), PARTED)
+    return _ramp(float(gap / np.linalg.norm(V[upper[-1]] - V[upper[0]])), _PARTED)
 
 
 def _ramp(value: float, limits: tuple[float, float]) -> float:
@@ -82,23 +90,18 @@ def _lips_as(model: MorphableModel, rest: np.ndarray, V: np.ndarray, share: floa
     for rim, other in ((upper, lower), (lower, upper)):
         inner = rim[1:-1]  # the corners belong to both
         too_far = (_across(model, V, rim, other) - width[0] / width[1] * _across(model, rest, rim, other))[1:-1]
-        anchors.append(inner)
-        targets.append(V[inner] + 0.5 * share * too_far)
+        free = ~np.isin(inner, border)  # some are part of it where the model does not tell what lies behind the lips
+        anchors.append(inner[free])
+        targets.append(V[inner[free]] + 0.5 * share * too_far[free])
     at = np.concatenate(anchors)
     result = V.copy()
     result[used] = laplacian_align(
-        V[used], local.reshape(-1, 3), np.searchsorted(used, at), np.vstack(targets), weight=WEIGHT
+        V[used], local.reshape(-1, 3), np.searchsorted(used, at), np.vstack(targets), weight=_WEIGHT
     )
     return result
 
 
 def _across(model: MorphableModel, V: np.ndarray, rim: np.ndarray, other: np.ndarray) -> np.ndarray:
     """From each vertex of a rim (k, 3) to the place on the other that it meets when the template's mouth closes."""
-    at, there = _along(model.mean[rim]), _along(model.mean[other])
-    return np.column_stack([np.interp(at, there, V[other, axis]) for axis in range(3)]) - V[rim]
-
-
-def _along(path: np.ndarray) -> np.ndarray:
-    """Length along a path of points (k, 3) up to each, as a share of the whole."""
-    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
-    return np.asarray(length / length[-1])
+    at, there = arc_shares(model.mean[rim]), arc_shares(model.mean[other])
+    return interpolated(at, there, V[other]) - V[rim]

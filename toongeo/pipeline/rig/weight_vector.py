@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+__all__ = ["weight_vector"]
+
 
 def weight_vector(weights: Mapping[str, float] | np.ndarray | None, names: Sequence[str]) -> np.ndarray:
     """Weights by name, or already a vector, as a vector in the order of ``names``.

@@ -5,6 +5,8 @@ import scipy.sparse as sp
 
 from toongeo.geometry import adjacency
 
+__all__ = ["diffuse_over_mesh", "diffused"]
+
 
 def diffuse_over_mesh(F: np.ndarray, colours: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Give unknown vertices the mean colour of their known neighbours, ring by ring.

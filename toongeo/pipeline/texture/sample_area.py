@@ -5,6 +5,8 @@ import numpy as np
 
 from toongeo.render import sample_image
 
+__all__ = ["sample_area"]
+
 
 def sample_area(img: np.ndarray, px: np.ndarray, footprint: np.ndarray) -> np.ndarray:
     """Values of a picture between its pixels, averaged over about ``footprint`` pixels.

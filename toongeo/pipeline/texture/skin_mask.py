@@ -1,4 +1,7 @@
-"""Which pixels of a crop are the skin of its face."""
+"""Which pixels of a crop are the skin of its face.
+
+Constants were chosen on the seven examples, whose painted backgrounds must not come through.
+"""
 
 import cv2
 import numpy as np
@@ -6,8 +9,10 @@ import numpy as np
 from toongeo.model.ibug68 import PARTS
 from toongeo.protocols import FaceLabel
 
-SKIN_SIDE = 480  # px; skin is looked for at this size
-PARSED_FACE = (
+__all__ = ["amid", "resized", "skin_mask", "skin_weight"]
+
+_SKIN_SIDE = 480  # px; skin is looked for at this size
+_PARSED_FACE = (
     FaceLabel.SKIN,
     FaceLabel.BROW_LEFT,
     FaceLabel.BROW_RIGHT,
@@ -18,13 +23,13 @@ PARSED_FACE = (
     FaceLabel.LOWER_LIP,
     FaceLabel.INNER_MOUTH,
 )
-SPREAD = (
+_SPREAD = (
     7.0,
     13.0,
 )  # CIELAB units: least and largest distance from the skin's colour that still counts as skin
-STRANGE = 26.0  # CIELAB units, lightness halved: farther than this from every tone of the face is not face
+_STRANGE = 26.0  # CIELAB units, lightness halved: farther than this from every tone of the face is not face
 # Chin, nose, eye and mouth corners: within their hull there is no hair.
-CORE = np.r_[PARTS["jaw"][4:13], PARTS["nose"], 36, 39, 42, 45, 48, 54]
+_CORE = np.r_[PARTS["jaw"][4:13], PARTS["nose"], 36, 39, 42, 45, 48, 54]
 
 
 def resized(layer: np.ndarray, shape: tuple[int, ...], method: int) -> np.ndarray:
@@ -36,7 +41,7 @@ def skin_mask(
     crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray, parts: np.ndarray | None, rim: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Skin and sure skin (h, w) bool of the crop, found at a reduced size, with eroded silhouettes."""
-    scale = min(1.0, SKIN_SIDE / max(crop.shape[:2]))
+    scale = min(1.0, _SKIN_SIDE / max(crop.shape[:2]))
     if parts is None:
         strange = _strange(crop, landmarks)
         allowed = (~strange).astype(np.uint8)
@@ -49,7 +54,7 @@ def skin_mask(
         drawn = (parts != FaceLabel.BACKGROUND) & (amid(landmarks, front.shape) > 0)
         # Strands that hang over the sides of the cheeks are not.
         drawn &= (parts != FaceLabel.HAIR) | (amid(_inwards(landmarks), front.shape) > 0)
-        allowed = (np.isin(parts, PARSED_FACE) | drawn).astype(np.uint8)
+        allowed = (np.isin(parts, _PARSED_FACE) | drawn).astype(np.uint8)
         if (allowed & front).any():
             # What is not the face takes its middle colour, so that no background blurs into the statistics.
             crop = np.where(
@@ -88,7 +93,7 @@ def _strange(crop: np.ndarray, landmarks: np.ndarray) -> np.ndarray:
     lab[..., 0] *= 0.5
     tones = _skin_tones(lab, core)
     distance = np.min([np.linalg.norm(lab - tone, axis=2) for tone in tones], axis=0)
-    far = (distance > STRANGE) & (amid(_inwards(landmarks), crop.shape) == 0)  # brows may touch the hair
+    far = (distance > _STRANGE) & (amid(_inwards(landmarks), crop.shape) == 0)  # brows may touch the hair
     hull = np.zeros(core.shape, np.uint8)
     cv2.fillConvexPoly(hull, cv2.convexHull(np.round(landmarks).astype(np.int32)), 1)
     _, labels = cv2.connectedComponents(far.astype(np.uint8))
@@ -105,7 +110,7 @@ def _inwards(landmarks: np.ndarray) -> np.ndarray:
 def _core(landmarks: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     """1 (h, w) float32 between eyes, nose, mouth and chin, 0 elsewhere."""
     core = np.zeros(shape[:2], np.float32)
-    cv2.fillConvexPoly(core, cv2.convexHull(np.round(landmarks[CORE]).astype(np.int32)), 1.0)
+    cv2.fillConvexPoly(core, cv2.convexHull(np.round(landmarks[_CORE]).astype(np.int32)), 1.0)
     return core
 
 
@@ -144,7 +149,7 @@ def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> 
     cv2.polylines(brows, [corners[PARTS[brow]] for brow in ("brow_right", "brow_left")], False, 1, 2 * width)
     hull, core = brows.copy(), np.zeros_like(brows)
     cv2.fillConvexPoly(hull, cv2.convexHull(corners), 1)
-    cv2.fillConvexPoly(core, cv2.convexHull(corners[CORE]), 1)
+    cv2.fillConvexPoly(core, cv2.convexHull(corners[_CORE]), 1)
     # What lies beyond the picture is unknown, so its edge erodes too.
     eroded = cv2.erode(hull, disc, borderType=cv2.BORDER_CONSTANT, borderValue=0)
     inner, core = (eroded | brows).astype(bool) & front, core.astype(bool) & front
@@ -157,7 +162,7 @@ def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> 
     distance = middle.copy()
     for tone in _skin_tones(lab, core):
         distance = np.where(hull > 0, np.minimum(distance, np.linalg.norm(lab - tone, axis=2)), distance)
-    spread = float(np.clip(2.5 * np.median(middle[inner]), *SPREAD))
+    spread = float(np.clip(2.5 * np.median(middle[inner]), *_SPREAD))
 
     broad = cv2.morphologyEx((front & (distance > spread)).astype(np.uint8), cv2.MORPH_OPEN, disc)
     _, labels = cv2.connectedComponents(broad)

@@ -4,6 +4,8 @@ import numpy as np
 
 from toongeo.protocols import FittedFace
 
+__all__ = ["texture_coordinates"]
+
 
 def texture_coordinates(face: FittedFace, shape: tuple[int, ...]) -> np.ndarray:
     """Where every vertex falls in the picture, normalized (Pan et al. 2024, Eq. 12).

@@ -1,4 +1,7 @@
-"""Colours for what the picture does not show: the surface's own diffusion, hair, and the inside of the mouth."""
+"""Colours for what the picture does not show: the surface's own diffusion, hair, and the inside of the mouth.
+
+Constants were chosen by eye on the seven examples.
+"""
 
 from functools import lru_cache
 
@@ -13,13 +16,15 @@ from toongeo.pipeline.texture.diffuse_over_mesh import diffused
 from toongeo.pipeline.texture.face_picture import FacePicture
 from toongeo.render import sample_image
 
-FADE_RINGS = 24  # edges over which unseen skin fades from its nearest seen colour to the mean skin colour
-INNER_RINGS = 3  # edges over which the inner side of lids and lips takes on the model's colour
-FRONTAL = 0.45  # cosine to the viewer from which a vertex is seen well
-SMOOTHING = 24  # passes that take the streaks out of the breadth-first diffusion
-SOFT = 12  # passes that soften the hairline
-BLUR_SIDE = 256  # px; the picture is blurred at this size
-HAIR_VERTICES = 8  # seen on hair; with fewer the head is taken for bald
+__all__ = ["unseen_colours"]
+
+_FADE_RINGS = 24  # edges over which unseen skin fades from its nearest seen colour to the mean skin colour
+_INNER_RINGS = 3  # edges over which the inner side of lids and lips takes on the model's colour
+_FRONTAL = 0.45  # cosine to the viewer from which a vertex is seen well
+_SMOOTHING = 24  # passes that take the streaks out of the breadth-first diffusion
+_SOFT = 12  # passes that soften the hairline
+_BLUR_SIDE = 256  # px; the picture is blurred at this size
+_HAIR_VERTICES = 8  # seen on hair; with fewer the head is taken for bald
 
 
 def unseen_colours(face: AlignedFace, picture: FacePicture) -> tuple[np.ndarray, np.ndarray]:
@@ -71,13 +76,13 @@ def _seen(face: AlignedFace, picture: FacePicture, mask: np.ndarray) -> np.ndarr
     safe = cv2.erode(mask.astype(np.uint8), np.ones((5, 5), np.uint8))
     at = sample_image(safe.astype(np.float32)[..., None], picture.points)[:, 0]
     inside = ((picture.points >= 0) & (picture.points <= np.array(safe.shape[::-1]) - 1)).all(1)
-    return (picture.cosines > FRONTAL) & inside & (at > 0.99)
+    return (picture.cosines > _FRONTAL) & inside & (at > 0.99)
 
 
 def _blurred_at(picture: FacePicture, mask: np.ndarray) -> np.ndarray:
     """Colours (n, 3) of the crop at the vertices, blurred within a mask: what lies outside does not mix in."""
     safe = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(np.float32)
-    scale = min(1.0, BLUR_SIDE / max(mask.shape))
+    scale = min(1.0, _BLUR_SIDE / max(mask.shape))
     layers = np.dstack([picture.pixels * safe[..., None], safe])
     layers = cv2.resize(layers, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     layers = cv2.GaussianBlur(layers, (0, 0), max(1.0, 0.01 * max(layers.shape[:2])))
@@ -88,10 +93,10 @@ def _blurred_at(picture: FacePicture, mask: np.ndarray) -> np.ndarray:
 
 def _spread(edges: sp.csr_array, values: np.ndarray, known: np.ndarray, far: np.ndarray) -> np.ndarray:
     """Values diffused from known vertices, fading to ``far``, and smoothed where unknown."""
-    filled, rings = diffused(edges, values, known, FADE_RINGS)
-    fade = np.clip(rings / FADE_RINGS, 0, 1)[:, None]
+    filled, rings = diffused(edges, values, known, _FADE_RINGS)
+    fade = np.clip(rings / _FADE_RINGS, 0, 1)[:, None]
     filled = np.where(rings[:, None] < 0, far, (1 - fade) * filled + fade * far)
-    return _smooth(edges, filled, ~known, SMOOTHING)
+    return _smooth(edges, filled, ~known, _SMOOTHING)
 
 
 def _smooth(edges: sp.csr_array, values: np.ndarray, free: np.ndarray, passes: int) -> np.ndarray:
@@ -114,13 +119,13 @@ def _with_hair(
         return colours
     hairy = regions["scalp"] | regions["forehead"]
     seen = _seen(face, picture, picture.hair) & hairy & ~skin
-    if seen.sum() < HAIR_VERTICES:
+    if seen.sum() < _HAIR_VERTICES:
         return colours
     own = _blurred_at(picture, picture.hair)
     hair = _spread(joined, own, seen, np.median(own[seen], axis=0))
     bare = _seen(face, picture, picture.skin) & hairy
     amount = np.where(seen | (regions["scalp"] & ~bare & _above_nape(face)), 1.0, 0.0)[:, None]
-    amount = _smooth(joined, amount, hairy, SOFT)
+    amount = _smooth(joined, amount, hairy, _SOFT)
     return (1 - amount) * colours + amount * hair
 
 
@@ -143,6 +148,6 @@ def _matched(colours: np.ndarray, model_skin: np.ndarray, skin: np.ndarray) -> n
 
 def _inner_rims(F: np.ndarray, colours: np.ndarray, outside: np.ndarray) -> np.ndarray:
     """Colours whose inner sides of lids and lips begin with the colour of the skin they continue."""
-    near, rings = diffused(adjacency(F, len(colours)), colours, outside, INNER_RINGS)
-    share = np.where(rings < 0, 0.0, np.clip(1 - rings / (INNER_RINGS + 1), 0, 1))[:, None]
+    near, rings = diffused(adjacency(F, len(colours)), colours, outside, _INNER_RINGS)
+    share = np.where(rings < 0, 0.0, np.clip(1 - rings / (_INNER_RINGS + 1), 0, 1))[:, None]
     return np.where(outside[:, None], colours, share * near + (1 - share) * colours)

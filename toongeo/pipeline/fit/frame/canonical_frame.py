@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.pipeline.fit.frame.unknowns import Unknowns
@@ -15,8 +15,6 @@ from toongeo.render.camera import ScaledOrthographicCamera
 from toongeo.render.perspective_camera import PerspectiveCamera
 
 __all__ = ["CanonicalFrame", "canonical_frame"]
-
-Floats = NDArray[np.float64]
 
 _FLIP = np.array([1.0, -1.0])
 

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+__all__ = ["Unknowns"]
+
 
 @dataclass(frozen=True)
 class Unknowns:

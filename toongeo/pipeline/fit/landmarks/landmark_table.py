@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Floats
 from toongeo.io.point_array import point_array
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["LandmarkTable", "landmark_table", "table_landmarks"]
 
-Floats = NDArray[np.float64]
-
-_FEWEST = 6
+_FEWEST = 6  # points overdetermine the pose
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS, PARTS
 
 __all__ = ["NEIGHBOURS", "outlier_errors"]
-
-Floats = NDArray[np.float64]
 
 
 def _neighbours() -> NDArray[np.bool_]:

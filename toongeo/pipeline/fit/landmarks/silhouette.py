@@ -1,4 +1,7 @@
-"""Jaw points found on the silhouette of the posed head, wherever it runs."""
+"""Jaw points found on the silhouette of the posed head, wherever it runs.
+
+Constants were chosen on heads of known shape and ten pictures (``benchmarks/truth3d.py``, ``benchmarks/landmarks.py``).
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from toongeo.arrays import Floats
 from toongeo.model.ibug68 import PARTS
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.protocols import HeadCamera
 
 __all__ = ["silhouette_landmarks"]
-
-Floats = NDArray[np.float64]
 
 _REACH_MM = 12.0  # from the contour lines: the skin on which an outline of the jaw can run
 _LINES = 2  # how many lines beside its own a jaw point may move to

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.pipeline.fit.losses.total_loss import TotalLoss
 
 __all__ = ["DecoupledPose", "decoupled_pose"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.pipeline.fit.losses.total_loss import TotalLoss
 
 __all__ = ["JointLoss"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry.rotations.rotation_vectors import left_jacobian, rotation_matrix
 from toongeo.pipeline.fit.frame.unknowns import Unknowns
 
 __all__ = ["LandmarkLoss"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,11 +8,10 @@ from functools import cache
 
 import nlopt
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats
 
 __all__ = ["Minimum", "known_algorithms", "nlopt_minimize"]
-
-Floats = NDArray[np.float64]
 
 _SUCCESSES = (
     "SUCCESS",

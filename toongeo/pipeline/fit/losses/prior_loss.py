@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.pipeline.fit.frame.unknowns import Unknowns
 
 __all__ = ["PriorLoss"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.pipeline.fit.losses.landmark_loss import LandmarkLoss
 from toongeo.pipeline.fit.losses.pitch_prior import PitchPrior
 from toongeo.pipeline.fit.losses.prior_loss import PriorLoss
 
 __all__ = ["TotalLoss"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,16 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.pipeline.fit.losses.nlopt_minimize import nlopt_minimize
 from toongeo.pipeline.fit.photometric.light_and_albedo import ReducedLoss
 
 __all__ = ["GaussNewtonStep", "gauss_newton_step"]
 
-Floats = NDArray[np.float64]
-
-_HALVINGS = 4
+_HALVINGS = 4  # of a step that does not lower the loss
 
 
 @dataclass(frozen=True, eq=False)

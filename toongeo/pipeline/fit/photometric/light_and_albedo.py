@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.pipeline.fit.losses.total_loss import TotalLoss
 from toongeo.pipeline.fit.photometric.photometric_loss import N_LIGHT, Observation, PhotometricLoss
 from toongeo.pipeline.fit.photometric.quadratic_model import QuadraticModel
 
 __all__ = ["ReducedLoss", "best_light", "light_penalty"]
-
-Floats = NDArray[np.float64]
 
 
 def light_penalty(loss: PhotometricLoss, observed: Observation, weight: float) -> Floats:

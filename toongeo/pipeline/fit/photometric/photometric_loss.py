@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.colour.srgb import srgb_to_linear
+from toongeo.arrays import Floats
+from toongeo.colour.srgb import linear_slope, srgb_to_linear
 from toongeo.geometry.operators.cross import cross
 from toongeo.geometry.rotations.rotation_vectors import left_jacobian, rotation_matrix
 from toongeo.pipeline.fit.frame.unknowns import Unknowns
@@ -18,10 +19,7 @@ from toongeo.pipeline.fit.photometric.shading_basis import shading_basis, shadin
 
 __all__ = ["N_LIGHT", "Observation", "PhotometricLoss"]
 
-Floats = NDArray[np.float64]
-
 N_LIGHT = 27  # nine harmonics in three channels
-_THRESHOLD = 0.04045  # of the two branches of sRGB
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,10 +102,8 @@ class PhotometricLoss:
         normals = sample_normals(p, self.samples)
         seen, seen_slope = self.plane.sample(y[:, :2] + x[self.unknowns.translation])
         srgb = self.samples.albedo_mean + (self.samples.albedo @ x[self.albedo]).reshape(-1, 3)
-        curved = 2.4 / 1.055 * ((np.maximum(srgb, _THRESHOLD) + 0.055) / 1.055) ** 1.4
-        slope = np.where(srgb <= _THRESHOLD, 1 / 12.92, curved)
         basis = shading_basis(normals.units @ (self.roll @ R).T)
-        return Observation(y, normals, basis, seen, seen_slope, srgb_to_linear(srgb), slope)
+        return Observation(y, normals, basis, seen, seen_slope, srgb_to_linear(srgb), linear_slope(srgb))
 
     def rendered(self, x: Floats, observed: Observation) -> Floats:
         """Shading times albedo (k, 3), linear light."""

@@ -8,11 +8,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["PhotometricSamples", "photometric_samples"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["PhotometricSolution"]
+from toongeo.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["PhotometricSolution"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,13 +8,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.colour.srgb import srgb_to_linear
 from toongeo.pipeline.fit.frame.canonical_frame import CanonicalFrame
 from toongeo.render.sample_image import sample_image
 
 __all__ = ["RectifiedPicture", "rectified_picture"]
-
-Floats = NDArray[np.float64]
 
 _MARGIN = 12.0  # mm around the projected face: so far the fit may move
 _FINE = 2  # picture pixels that an INTER_AREA reduction leaves to a pixel of the plane
@@ -64,7 +63,7 @@ class RectifiedPicture:
         inside = (px == given)[:, None, :]
         return upper * (1 - fy) + lower * fy, slope * inside
 
-    def trust(self, points: Floats) -> Floats:
+    def confidence_at(self, points: Floats) -> Floats:
         """Confidence (k,) at canonical points (k, 2) mm; 0 beyond the border."""
         height, width = self.confidence.shape
         px = self.grid(points)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import bsr_array
 
+from toongeo.arrays import Floats
 from toongeo.geometry.operators.cross import cross
 from toongeo.pipeline.fit.photometric.photometric_samples import PhotometricSamples
 
 __all__ = ["SampleNormals", "sample_normals"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.render.spherical_harmonics import sh_basis
 
 __all__ = ["shading_basis", "shading_slope"]
-
-Floats = NDArray[np.float64]
 
 _LOBE = np.repeat([1.0, 2 / 3, 1 / 4], [1, 3, 5])  # Lambert's, over pi (Ramamoorthi & Hanrahan 2001, Eq. 8)
 # Factors of x, y, z; of xy, yz, xz and (x^2 - y^2) / 2; of 3 z^2 - 1: read off `sh_basis` where the others vanish.

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["exclusive_bounds"]
+from toongeo.arrays import Floats
 
-Floats = NDArray[np.float64]
+__all__ = ["exclusive_bounds"]
 
 
 def exclusive_bounds(upper: Floats, x: Floats, pairs: NDArray[np.int64]) -> Floats:

@@ -1,12 +1,15 @@
-"""How much each landmark counts, and in which direction."""
+"""How much each landmark counts, and in which direction.
+
+Constants were chosen on heads of known shape and ten pictures (``benchmarks/truth3d.py``, ``benchmarks/landmarks.py``).
+"""
 
 from __future__ import annotations
 
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.geometry import vertex_normals
 from toongeo.model.anatomy.visible_landmarks import jaw_weights
 from toongeo.model.ibug68 import INNER, PARTS
@@ -14,8 +17,6 @@ from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.fit_options import FitOptions
 
 __all__ = ["evened_weights", "landmark_weights"]
-
-Floats = NDArray[np.float64]
 
 _CLICK_MM = 1.0  # standard deviation of a click, on the head
 _GUESSED = 0.1  # weight of a jaw point whose whole line is out of sight: the face hides it
@@ -42,7 +43,7 @@ def landmark_weights(points: Floats, model: MorphableModel, rotation: Floats, op
         precision = np.linalg.inv(spread)
         weights = precision / (np.trace(precision[INNER], axis1=1, axis2=2).mean() / 2)
     seen = np.where(_front_normals(model) @ rotation[2] > 0, 1.0, _GUESSED)[:, None, None]
-    weights[PARTS["jaw"]] = options.jaw_weight * seen * jaw_weights(points[PARTS["jaw"]], options.jaw_tangent)
+    weights[PARTS["jaw"]] = options.jaw.weight * seen * jaw_weights(points[PARTS["jaw"]], options.jaw.tangent)
     return weights
 
 

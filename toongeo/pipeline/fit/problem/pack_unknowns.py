@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from toongeo.arrays import Floats
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.problem.landmark_problem import LandmarkProblem
 
 __all__ = ["pack_unknowns"]
-
-Floats = NDArray[np.float64]
 
 
 def pack_unknowns(fit: FaceFit, landmarks: LandmarkProblem) -> Floats:

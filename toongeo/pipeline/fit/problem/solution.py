@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.protocols import HeadCamera
 
 __all__ = ["PassState", "Solution"]
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +35,6 @@ class PassState:
     """What a pass holds fixed: landmark vertices (68,), robust weights (k,), ``w_r``, and the upper bounds (n,)."""
 
     vertices: NDArray[np.int64]
-    trust: Floats
+    robust_weight: Floats
     prior_weight: float
     upper: Floats

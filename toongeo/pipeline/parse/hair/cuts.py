@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.pipeline.parse.hair.colour_evidence import colour_evidence
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
 from toongeo.pipeline.parse.hair.min_cut import min_cut
@@ -14,7 +14,6 @@ from toongeo.pipeline.parse.working_view import WorkingView
 
 __all__ = ["colour_cut", "grab_cut"]
 
-Field = NDArray[np.float32]
 
 _PLACE, _COLOUR = 1.0, 1.0  # weights of the posterior's log-odds and of the colours' evidence
 _CLIP = 0.02  # posteriors are believed up to here
@@ -32,7 +31,7 @@ _COARSE = 2  # the first two cuts are of a picture reduced by this: ten times fa
 _BAND = 0.03  # head sizes about the coarse outline in which the last cut looks for the fine one
 
 
-def colour_cut(lab: Field, zones: HeadZones, posterior: Field, ground: Mask | None) -> Mask:
+def colour_cut(lab: Singles, zones: HeadZones, posterior: Singles, ground: Mask | None) -> Mask:
     """Hair or hat (h, w) bool: cuts whose colours are learned from the cut before, and whose odds keep the posterior.
 
     ``ground`` are pixels that a flood has reached; it leaks into dark hair on dark ground, so a high posterior wins.
@@ -64,7 +63,7 @@ def colour_cut(lab: Field, zones: HeadZones, posterior: Field, ground: Mask | No
     return cut
 
 
-def grab_cut(view: WorkingView, zones: HeadZones, posterior: Field, ground: Mask | None) -> Mask:
+def grab_cut(view: WorkingView, zones: HeadZones, posterior: Singles, ground: Mask | None) -> Mask:
     """Hair or hat (h, w) bool by GrabCut (Rother et al. 2004), whose seeds are where the posterior is sure."""
     mask = np.where(posterior > 0.5, cv2.GC_PR_FGD, cv2.GC_PR_BGD).astype(np.uint8)
     mask[grown(posterior > 0.9, -0.02 * zones.head)] = cv2.GC_FGD
@@ -85,7 +84,7 @@ def grab_cut(view: WorkingView, zones: HeadZones, posterior: Field, ground: Mask
     return result
 
 
-def _ground(ground: Mask | None, posterior: Field) -> Mask:
+def _ground(ground: Mask | None, posterior: Singles) -> Mask:
     return np.zeros(posterior.shape, bool) if ground is None else ground & (posterior < _LIKELY)
 
 

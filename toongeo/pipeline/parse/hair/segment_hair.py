@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.hair.cuts import colour_cut, grab_cut
 from toongeo.pipeline.parse.hair.growth_rules import growth_rules
@@ -22,7 +22,6 @@ from toongeo.pipeline.parse.working_view import WorkingView
 
 __all__ = ["SegmentedHair", "segment_hair"]
 
-Field = NDArray[np.float32]
 
 _BLUR = 1.8  # px: superpixels have jagged borders
 _HATS = 0.35  # odds of hats against hair, in pictures to those in renders
@@ -36,7 +35,7 @@ class SegmentedHair:
 
     hair: Mask
     hat: Mask
-    alpha: Field
+    alpha: Singles
     measures: HairMeasures
 
 
@@ -56,19 +55,19 @@ def segment_hair(view: WorkingView, zones: HeadZones, model: HairModel) -> Segme
     return SegmentedHair(both & ~hat, hat, alpha, measures)
 
 
-def _sober(chances: Field) -> Field:
+def _sober(chances: Singles) -> Singles:
     """Probabilities (k, 3) with fewer hats: the renders wear more of them than people do."""
     _, hair, hat = chances.T
     share = _HATS * hat / np.maximum(_HATS * hat + hair, 1e-9)
     return np.stack([chances[:, 0], (hair + hat) * (1 - share), (hair + hat) * share], axis=1).astype(np.float32)
 
 
-def _cover(chances: Field) -> Field:
+def _cover(chances: Singles) -> Singles:
     """How likely each pixel (h, w) is hair or hat."""
     return np.asarray(cv2.GaussianBlur(chances[..., 1] + chances[..., 2], (0, 0), _BLUR), np.float32)
 
 
-def _hat(mask: Mask, chances: Field, zones: HeadZones) -> Mask:
+def _hat(mask: Mask, chances: Singles, zones: HeadZones) -> Mask:
     """The large pieces of the mask that are hat rather than hair."""
     lead = cv2.GaussianBlur(chances[..., 2] - chances[..., 1], (0, 0), 2 * _BLUR)
     _, pieces, stats, _ = cv2.connectedComponentsWithStats((mask & (lead > 0)).astype(np.uint8), connectivity=4)

@@ -1,4 +1,7 @@
-"""The outline of an eye in a parsed picture."""
+"""The outline of an eye in a parsed picture.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/snapping.py``).
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from skimage.measure import find_contours
 
+from toongeo.arrays import Floats
+from toongeo.geometry.polyline import arc_length, interpolated
 from toongeo.protocols import FaceLabel, FaceParse
 
 __all__ = ["EyeBoundary", "eye_boundary"]
-
-Floats = NDArray[np.float64]
 
 _FEWEST = 4  # px
 _SOFT = 0.6  # px; smooths the stairs of a mask
@@ -72,6 +75,6 @@ def _outline(piece: NDArray[np.uint8]) -> Floats | None:
     if not lines:
         return None
     line = max(lines, key=len)[:, ::-1]
-    length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
+    length = arc_length(line)
     samples = np.linspace(0, length[-1], max(int(length[-1] / _STEP), 8), endpoint=False)
-    return np.column_stack([np.interp(samples, length, line[:, k]) for k in range(2)])
+    return interpolated(samples, length, line)

@@ -1,16 +1,17 @@
-"""What speaks for and against a contour being the lids of an eye."""
+"""What speaks for and against a contour being the lids of an eye.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/snapping.py``).
+"""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.pipeline.parse.lids.lid_candidates import ARC, LidCandidates
 from toongeo.pipeline.parse.lids.lid_patch import CHANNELS
 
 __all__ = ["lid_features"]
-
-Floats = NDArray[np.float32]
 
 # px along the outward normal; two bands are the mean of two lines
 _INSIDE, _LINE, _OUTSIDE, _BEYOND = (-4.5, -2.5), (0.0,), (1.0, 3.0), (7.0,)
@@ -27,7 +28,7 @@ _PARTS = {
 _EYE, _ALIEN, _STROKE, _LIGHT, _RED, _YELLOW, _BROW = range(len(CHANNELS))
 
 
-def lid_features(channels: Floats, candidates: LidCandidates) -> dict[str, Floats]:
+def lid_features(channels: Singles, candidates: LidCandidates) -> dict[str, Singles]:
     """Numbers (k,) by name for k candidates: contrast across lids and corners, what is inside, how far they moved.
 
     Parameters
@@ -41,7 +42,7 @@ def lid_features(channels: Floats, candidates: LidCandidates) -> dict[str, Float
     bands = _bands(channels, contours, opening)
     middle = contours.mean(axis=1, keepdims=True)[:, None]
     rings = _taken(channels, middle + (contours[:, None] - middle) * _RINGS[:, None, None])  # (k, 4, 32, c)
-    found: dict[str, Floats] = {}
+    found: dict[str, Singles] = {}
     for part, where in _PARTS.items():
         contrast = _contrast(*(band[:, where] for band in bands))
         found |= {f"{part} {name}": value for name, value in contrast.items()}
@@ -50,7 +51,7 @@ def lid_features(channels: Floats, candidates: LidCandidates) -> dict[str, Float
     return found | content | _near_brow(bands) | shut | _moved(candidates)
 
 
-def _bands(channels: Floats, contours: Floats, opening: Floats) -> list[Floats]:
+def _bands(channels: Singles, contours: Singles, opening: Singles) -> list[Singles]:
     """Channels (k, 32, c) just inside, on, just outside and farther outside the contours."""
     along = np.roll(contours, -1, axis=1) - np.roll(contours, 1, axis=1)
     normal = np.stack([along[..., 1], -along[..., 0]], axis=2)
@@ -68,7 +69,7 @@ def _bands(channels: Floats, contours: Floats, opening: Floats) -> list[Floats]:
     return [sum(band[1:], band[0]) / np.float32(len(band)) for band in lines]
 
 
-def _taken(channels: Floats, points: Floats) -> Floats:
+def _taken(channels: Singles, points: Singles) -> Singles:
     """Channels at the nearest pixels; beyond the border the last ones go on."""
     height, width, count = channels.shape
     column = np.clip(points[..., 0] + np.float32(0.5), 0, width - 1).astype(np.int32)
@@ -76,7 +77,7 @@ def _taken(channels: Floats, points: Floats) -> Floats:
     return channels.reshape(-1, count).take(row * width + column, axis=0)
 
 
-def _contrast(inside: Floats, line: Floats, outside: Floats, beyond: Floats) -> dict[str, Floats]:
+def _contrast(inside: Singles, line: Singles, outside: Singles, beyond: Singles) -> dict[str, Singles]:
     """Contrast across a part of the contour, from its samples (k, m, c) in each band."""
     edge = inside - outside
     step = edge.mean(axis=1)
@@ -96,7 +97,7 @@ def _contrast(inside: Floats, line: Floats, outside: Floats, beyond: Floats) -> 
     }
 
 
-def _content(rings: Floats) -> dict[str, Floats]:
+def _content(rings: Singles) -> dict[str, Singles]:
     """What lies inside, from samples (k, 4, 32, c) on smaller copies of the contour."""
     means = rings.mean(axis=2)
     area = np.tensordot(means, _RINGS / _RINGS.sum(), axes=(1, 0))  # rings count by their length
@@ -118,7 +119,7 @@ def _content(rings: Floats) -> dict[str, Floats]:
     }
 
 
-def _near_brow(bands: list[Floats]) -> dict[str, Floats]:
+def _near_brow(bands: list[Singles]) -> dict[str, Singles]:
     _, line, _, beyond = bands
     upper = _PARTS["upper"]
     return {
@@ -127,7 +128,7 @@ def _near_brow(bands: list[Floats]) -> dict[str, Floats]:
     }
 
 
-def _slit(bands: list[Floats], content: dict[str, Floats]) -> dict[str, Floats]:
+def _slit(bands: list[Singles], content: dict[str, Singles]) -> dict[str, Singles]:
     """What a shut eye shows: a dark line rather than an opening."""
     _, line, outside, beyond = (band[..., _LIGHT] for band in bands)
     upper, lower = (
@@ -144,7 +145,7 @@ def _slit(bands: list[Floats], content: dict[str, Floats]) -> dict[str, Floats]:
     }
 
 
-def _moved(candidates: LidCandidates) -> dict[str, Floats]:
+def _moved(candidates: LidCandidates) -> dict[str, Singles]:
     """How far a candidate is from the given contour; 1 is a tenth of the outer-eye distance."""
     x, y = candidates.shifts.T / 10.0
     grown, far = candidates.growths * 10.0, np.hypot(x, y)

@@ -1,4 +1,7 @@
-"""The surroundings of one eye, upright and always of the same size, in channels that tell eye from skin."""
+"""The surroundings of one eye, upright and always of the same size, in channels that tell eye from skin.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/snapping.py``).
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.colour.cielab import cielab
 from toongeo.model.ibug68 import LID_RIMS, MIRROR, PARTS
 from toongeo.pipeline.parse.masks import filled
 from toongeo.pipeline.parse.skin_surface import SkinSurface, colour_mode, skin_surface
 
 __all__ = ["CHANNELS", "EYES_APART", "RESOLUTION", "LidPatch", "eye_points", "lid_patch", "lid_unit"]
-
-Floats = NDArray[np.float64]
 
 RESOLUTION = 100.0  # px of a patch per outer-eye distance
 CHANNELS = ("eye", "alien", "stroke", "light", "redness", "yellowness", "brow")

@@ -1,4 +1,7 @@
-"""Where the skin around an eye passes through itself."""
+"""Where the skin around an eye passes through itself.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
+"""
 
 from typing import NamedTuple
 
@@ -9,9 +12,11 @@ from toongeo.model import MorphableModel
 from toongeo.model.anatomy.eye_patch import EyePatch
 from toongeo.pipeline.rig.eyes.keep_lids_outside import neighbour_means
 
-ROUNDS = 5  # of looking for crossings and smoothing
-WIDTH = 4  # edges around them within which ways are smoothed
-PASSES = 3  # of smoothing a round
+__all__ = ["Sheet", "around", "crossing_all", "crossing_triangles", "resolve_crossings"]
+
+_ROUNDS = 5  # of looking for crossings and smoothing
+_WIDTH = 4  # edges around them within which ways are smoothed
+_PASSES = 3  # of smoothing a round
 
 
 class Sheet(NamedTuple):
@@ -52,7 +57,7 @@ def resolve_crossings(
     ``allowed``.
     """
     best, least, known = ways, np.inf, None
-    for _ in range(ROUNDS):
+    for _ in range(_ROUNDS):
         hit = crossing_all(patch, start + ways)
         if len(hit) > allowed:
             known = crossing_all(patch, start) if known is None else known
@@ -61,9 +66,9 @@ def resolve_crossings(
             best, least = ways, len(hit)
         if least <= allowed:
             break
-        weight = around(model, patch.vertices[patch.faces[hit]], WIDTH)[:, None]
+        weight = around(model, patch.vertices[patch.faces[hit]], _WIDTH)[:, None]
         ways = ways.copy()
-        for _ in range(PASSES):
+        for _ in range(_PASSES):
             ways += weight * (neighbour_means(model) @ ways - ways)
     return best
 

@@ -1,4 +1,7 @@
-"""Eyeballs behind the lids of a face."""
+"""Eyeballs behind the lids of a face.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
+"""
 
 import time
 from dataclasses import dataclass
@@ -6,29 +9,32 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo._read_only import read_only
-from toongeo.model import EyeballTemplate
+from toongeo.model import EyeballTemplate, MorphableModel
 from toongeo.model.anatomy.gaze import GAZE_NAMES, TURN, gaze_rotation
-from toongeo.model.anatomy.lid_rings import lid_rings, opening_height
+from toongeo.model.anatomy.lid_rings import lid_rings, lids_of, opening_height
 from toongeo.model.anatomy.parts import SIDES
+from toongeo.model.anatomy.rims import rim_path
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.rig import Rig
 
-LEAST, USUAL, MOST = 0.56, 0.72, 0.9  # radius / greatest width of the opening
-STEPS = 9  # radii that are tried from least to most
-PRIOR = np.array([0.12, 0.12, 0.3, 0.1])  # of the radius: s.d. of the centre about the opening's middle, of the radius
-RIM = 0.04  # of the radius: s.d. of the lids' edges about the sphere
-HUBER = 2.0  # s.d. beyond which a vertex pulls with constant force
-RIM_POINTS = 30  # a rim counts as so many independent ones
-FRONT = 0.9  # of the radius: how far from the line of sight the lids' edges may be
+__all__ = ["Eyes", "LEAST", "MOST", "OFF", "WANDER", "fit_eyes"]
+
+LEAST, _USUAL, MOST = 0.56, 0.72, 0.9  # radius / greatest width of the opening
+_STEPS = 9  # radii that are tried from least to most
+_PRIOR = np.array([0.12, 0.12, 0.3, 0.1])  # of the radius: s.d. of the centre about the opening's middle, of the radius
+_RIM = 0.04  # of the radius: s.d. of the lids' edges about the sphere
+_HUBER = 2.0  # s.d. beyond which a vertex pulls with constant force
+_RIM_POINTS = 30  # a rim counts as so many independent ones
+_FRONT = 0.9  # of the radius: how far from the line of sight the lids' edges may be
 OFF = 0.035  # of the radius: how far off the eyeball the lids' edges lie, and other skin at least
 WANDER = np.array([0.4, 0.35])  # of the opening's width and height: how far an iris moves from its middle
-NEAR = 1.6  # radii from where a centre is looked for: skin farther away does not come into the eyeball
-REACH = 2.0  # widths of the opening: skin farther away is not looked at
+_NEAR = 1.6  # radii from where a centre is looked for: skin farther away does not come into the eyeball
+_REACH = 2.0  # widths of the opening: skin farther away is not looked at
 
 
 @dataclass(frozen=True, eq=False)
 class Eyes:
-    """Left and right eyeball of a face.
+    """Left and right eyeball of a face; of a model that has none, arrays of no rows.
 
     Attributes
     ----------
@@ -40,8 +46,8 @@ class Eyes:
         the eyeball only so far that the iris does not leave it.
     pose : (8,) float64
         Weights of ``GAZE_NAMES`` with which the eyes look as in the picture.
-    report : dict
-        ``seconds``.
+    seconds : float
+        That finding them took.
     """
 
     centres: np.ndarray
@@ -49,7 +55,7 @@ class Eyes:
     templates: tuple[EyeballTemplate, ...]
     turn: np.ndarray
     pose: np.ndarray
-    report: dict[str, float]
+    seconds: float
 
     def __post_init__(self) -> None:
         read_only(self, "centres", "radii", "turn", "pose")
@@ -86,18 +92,28 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
     Returns
     -------
     Eyes
+        One for each eyeball of the model.
     """
     started = time.perf_counter()
-    centres, radii, turn = np.empty((2, 3)), np.empty(2), np.empty((2, 2))
+    count = len(face.model.eyes)
+    centres, radii, turn = np.empty((count, 3)), np.empty(count), np.empty((count, 2))
     axes = np.array([[0.0, 0.0, 1.0], _line_of_sight(face)])
-    for side, name in enumerate(SIDES):
-        rings = lid_rings(face.model, name)
+    for side in range(count):
+        edges, upper, lower = _edges(face.model, SIDES[side])
         skin = face.region("skin").copy()
-        skin[rings.vertices] = False
-        centres[side], radii[side] = _sphere(rig.neutral[rings.vertices], rig.neutral[skin], axes)
-        turn[side] = _turn(rig.neutral[rings.upper[0]], rig.neutral[rings.lower[0]], radii[side])
-    report = {"seconds": time.perf_counter() - started}
-    return Eyes(centres, radii, face.model.eyes, turn, np.zeros(len(GAZE_NAMES)), report)
+        skin[edges] = False
+        centres[side], radii[side] = _sphere(rig.neutral[edges], rig.neutral[skin], axes)
+        turn[side] = _turn(rig.neutral[upper], rig.neutral[lower], radii[side])
+    return Eyes(centres, radii, face.model.eyes, turn, np.zeros(len(GAZE_NAMES)), time.perf_counter() - started)
+
+
+def _edges(model: MorphableModel, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices of the lids' edges, and of their upper and lower rims; the rims alone where the lids are no rings."""
+    if model.has(*lids_of(side)):
+        rings = lid_rings(model, side)
+        return rings.vertices, rings.upper[0], rings.lower[0]
+    upper, lower = (rim_path(model, f"lid_{lid}_{side}") for lid in ("upper", "lower"))
+    return np.union1d(upper, lower), upper, lower
 
 
 def _turn(upper: np.ndarray, lower: np.ndarray, radius: float) -> np.ndarray:
@@ -119,17 +135,17 @@ def _sphere(points: np.ndarray, skin: np.ndarray, axes: np.ndarray) -> tuple[np.
     ``axes`` (a, 3) are directions from which the edges should be seen before the sphere, not beside it.
     """
     size = float(np.linalg.norm(points[:, None] - points, axis=2).max())
-    skin = skin[np.linalg.norm(skin - points.mean(0), axis=1) < REACH * size]
-    wanted = _robust_sphere(points, _behind(points, USUAL * size), USUAL * size)[1]
+    skin = skin[np.linalg.norm(skin - points.mean(0), axis=1) < _REACH * size]
+    wanted = _robust_sphere(points, _behind(points, _USUAL * size), _USUAL * size)[1]
     best, least = (points.mean(0), size), np.inf
-    for radius in np.linspace(LEAST, MOST, STEPS) * size:
+    for radius in np.linspace(LEAST, MOST, _STEPS) * size:
         behind = _behind(points, radius)
-        near = skin[np.linalg.norm(skin - behind, axis=1) < NEAR * radius]
+        near = skin[np.linalg.norm(skin - behind, axis=1) < _NEAR * radius]
         centre, _ = _robust_sphere(points, behind, radius, near)
         offset = points - centre
         beside = np.sqrt(((offset[:, None] - (offset @ axes.T)[..., None] * axes) ** 2).sum(-1)).max() / radius
         through = 1 - np.linalg.norm(skin - centre, axis=1).min(initial=np.inf) / radius
-        cost = max(0.0, beside - FRONT) + max(0.0, through) + 0.1 * abs(np.log(radius / wanted))
+        cost = max(0.0, beside - _FRONT) + max(0.0, through) + 0.1 * abs(np.log(radius / wanted))
         if cost < least:
             best, least = (centre, float(radius)), cost
     return best
@@ -154,7 +170,7 @@ def _robust_sphere(
     """
     start = np.r_[centre, radius]
     x = start.copy()
-    precision = 1.0 / (PRIOR * radius) ** 2
+    precision = 1.0 / (_PRIOR * radius) ** 2
     free = np.arange(4 if skin is None else 3)
     count = len(points)
     if skin is not None:
@@ -162,11 +178,11 @@ def _robust_sphere(
     for _ in range(10):
         offset = points - x[:3]
         distance = np.linalg.norm(offset, axis=1)
-        residual = (distance - (1 + OFF) * x[3]) / (RIM * radius)
+        residual = (distance - (1 + OFF) * x[3]) / (_RIM * radius)
         residual[count:] = np.minimum(residual[count:], 0.0)
-        weight = np.minimum(1.0, HUBER / np.maximum(np.abs(residual), 1e-12)) * (RIM_POINTS / count)
+        weight = np.minimum(1.0, _HUBER / np.maximum(np.abs(residual), 1e-12)) * (_RIM_POINTS / count)
         weight[count:] *= residual[count:] < 0
-        J = np.column_stack([-offset / distance[:, None], np.full(len(points), -1 - OFF)]) / (RIM * radius)
+        J = np.column_stack([-offset / distance[:, None], np.full(len(points), -1 - OFF)]) / (_RIM * radius)
         H = J.T @ (weight[:, None] * J) + np.diag(precision)
         step = J.T @ (weight * residual) + precision * (x - start)
         x[free] -= np.linalg.solve(H[np.ix_(free, free)], step[free])

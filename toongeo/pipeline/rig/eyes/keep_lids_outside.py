@@ -1,6 +1,8 @@
-"""Lids that slide over the eyeballs."""
+"""Lids that slide over the eyeballs.
 
-import dataclasses
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
+"""
+
 import time
 from functools import lru_cache
 
@@ -15,13 +17,15 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.rig import Rig
 
+__all__ = ["CLEARANCE", "SHUT", "cleared", "keep_lids_outside", "neighbour_means", "outwards", "shortfall"]
+
 CLEARANCE = 0.01  # of the radius: how far skin stays off an eyeball on its way
-NEAR = 2.0  # radii from an eyeball's centre: skin farther from it does not come to it
+_NEAR = 2.0  # radii from an eyeball's centre: skin farther from it does not come to it
 SHUT = 0.05  # of the radius: how far skin stays off when the eye is shut
-PAIRED_CLEARANCE = 0.03  # of the radius: what an expression leaves of it
-PAIRED = 2.0  # from closed lids an expression must be clear up to this weight, so that two at once are
-ROUNDS, SMOOTHED = 6, 3  # of pushing out; the first of these spread it
-SHORTEST = 0.05  # of the way: what is inside earlier than that is pushed as if it were there
+_PAIRED_CLEARANCE = 0.03  # of the radius: what an expression leaves of it
+_PAIRED = 2.0  # from closed lids an expression must be clear up to this weight, so that two at once are
+_ROUNDS, _SMOOTHED = 6, 3  # of pushing out; the first of these spread it
+_SHORTEST = 0.05  # of the way: what is inside earlier than that is pushed as if it were there
 
 
 def keep_lids_outside(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
@@ -48,7 +52,7 @@ def keep_lids_outside(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     dips = sagitta(face.model, rig.neutral)
     for side, name in enumerate(SIDES):
         radius, offset = eyes.radii[side], rig.neutral - eyes.centres[side]
-        near = np.flatnonzero(skin & (np.linalg.norm(offset, axis=1) < NEAR * radius))
+        near = np.flatnonzero(skin & (np.linalg.norm(offset, axis=1) < _NEAR * radius))
         spread, start = neighbour_means(face.model)[near][:, near], offset[near]
         clear = np.minimum(radius * (1 + CLEARANCE) + dips[near] / radius, np.linalg.norm(start, axis=1))
         blink = rig.names.index(f"eyeBlink{name.capitalize()}")
@@ -56,14 +60,13 @@ def keep_lids_outside(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         stretched = sagitta(face.model, rig.neutral + deltas[blink])[near] / radius
         shut = start + deltas[blink, near]
         shut += outwards(shut, radius * (1 + SHUT) + stretched)
-        clear_shut = np.minimum(radius * (1 + PAIRED_CLEARANCE) + stretched, np.linalg.norm(shut, axis=1))
+        clear_shut = np.minimum(radius * (1 + _PAIRED_CLEARANCE) + stretched, np.linalg.norm(shut, axis=1))
         for shapes in (deltas, gaze):
             for k in np.flatnonzero(np.any(shapes[:, near], axis=(1, 2))):
                 way = cleared(start, shapes[k, near], clear, spread)
-                shapes[k, near] = cleared(shut, PAIRED * way, clear_shut, spread) / PAIRED
+                shapes[k, near] = cleared(shut, _PAIRED * way, clear_shut, spread) / _PAIRED
         deltas[blink, near] = shut - start
-    report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
-    return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
+    return rig.changed(started, deltas=deltas, gaze=gaze)
 
 
 def cleared(start: np.ndarray, way: np.ndarray, radius: np.ndarray, spread: sp.csr_array) -> np.ndarray:
@@ -86,18 +89,18 @@ def cleared(start: np.ndarray, way: np.ndarray, radius: np.ndarray, spread: sp.c
     reached[may] = shortfall(start[may], way[may], radius[may]).any(1)
     if not reached.any():
         return way
-    for _ in range(SMOOTHED):
+    for _ in range(_SMOOTHED):
         reached |= spread @ reached > 0
     if 2 * reached.sum() < len(reached):
         at, way = np.flatnonzero(reached), way.copy()
         way[at] = cleared(start[at], way[at], radius[at], spread[at][:, at])
         return way
-    for k in range(ROUNDS):
+    for k in range(_ROUNDS):
         lack = shortfall(start, way + change, radius)
         if not lack.any():
             break
         change += lack
-        if k < SMOOTHED:
+        if k < _SMOOTHED:
             mean = spread @ change
             wider = (mean**2).sum(1) > (change**2).sum(1)
             change[wider] = mean[wider]
@@ -111,7 +114,7 @@ def shortfall(start: np.ndarray, way: np.ndarray, radius: np.ndarray) -> np.ndar
     nearest = start + share[:, None] * way
     distance = np.linalg.norm(nearest, axis=1)
     inside = (distance < radius) & (share > 0)
-    out = (radius / np.maximum(distance, 1e-9) - 1) / np.maximum(share, SHORTEST)
+    out = (radius / np.maximum(distance, 1e-9) - 1) / np.maximum(share, _SHORTEST)
     return np.asarray(np.where(inside, out, 0.0)[:, None] * nearest)
 
 

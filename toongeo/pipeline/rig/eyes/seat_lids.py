@@ -1,6 +1,8 @@
-"""Lids that lie on their eyeballs."""
+"""Lids that lie on their eyeballs.
 
-import dataclasses
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
+"""
+
 import time
 
 import numpy as np
@@ -15,17 +17,19 @@ from toongeo.pipeline.rig.eyes.keep_lids_outside import outwards
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.protocols import Camera
 
+__all__ = ["SKIN", "seat_lids"]
+
 # Of the radius: how far off the eyeball the rows of LidRings lie, from the inner edge outwards. The upper lid lies
 # before the lower one, so that closed lids keep their order, and lids that have far to go lie farther off: a straight
 # way around the eyeball sets out the flatter.
-UPPER, LOWER, FAR = np.array([[0.03, 0.04, 0.05], [0.02, 0.025, 0.03], [0.055, 0.06, 0.065]])
-OPEN = np.radians([40.0, 80.0])  # about the eyeball: openings from and to which lids have farther and farther to go
-CORNER = 4  # columns over which upper and lower become the same towards a corner
+_UPPER, _LOWER, _FAR = np.array([[0.03, 0.04, 0.05], [0.02, 0.025, 0.03], [0.055, 0.06, 0.065]])
+_OPEN = np.radians([40.0, 80.0])  # about the eyeball: openings from and to which lids have farther and farther to go
+_CORNER = 4  # columns over which upper and lower become the same towards a corner
 SKIN = 0.03  # of the radius: how far off the eyeball the skin around the lids' edges stays
-GAPS = (0.015, 0.07)  # of the radius: how far off the lids' edges lie, at least and at most
-RELIEF = 0.03  # of the radius: over which the edges move alike
-ROUNDS = 5  # of laying onto the eyeball what is still inside
-GRAZING = 0.25  # cosine at the sphere below which a line of sight is taken to miss it
+_GAPS = (0.015, 0.07)  # of the radius: how far off the lids' edges lie, at least and at most
+_RELIEF = 0.03  # of the radius: over which the edges move alike
+_ROUNDS = 5  # of laying onto the eyeball what is still inside
+_GRAZING = 0.25  # cosine at the sphere below which a line of sight is taken to miss it
 
 
 def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
@@ -60,21 +64,20 @@ def seat_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
         patch = eye_patch(face.model, name)
         bent = _bent(face.camera, patch, V, at, moves)
         bent = V + resolve_crossings(face.model, patch, V, bent - V, 0)
-        V = bent + np.where(skin[:, None], outwards(bent - centre, radius * (1 + GAPS[0]) + dips / radius), 0.0)
-    report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
-    return dataclasses.replace(rig, neutral=V, report=report)
+        V = bent + np.where(skin[:, None], outwards(bent - centre, radius * (1 + _GAPS[0]) + dips / radius), 0.0)
+    return rig.changed(started, neutral=V)
 
 
 def _clearances(rings: LidRings, V: np.ndarray, radius: float) -> np.ndarray:
     """How far off the eyeball each of ``rings.vertices`` shall lie, (k,), of its radius."""
     height = opening_height(V[rings.upper[0]], V[rings.lower[0]])
-    far = np.interp(2 * np.arcsin(min(1.0, height / (2 * radius))), OPEN, [0.0, 1.0])
-    off, middle = np.zeros(len(V)), (UPPER + LOWER) / 2
-    for lid, wanted in ((rings.upper, UPPER), (rings.lower, LOWER)):
+    far = np.interp(2 * np.arcsin(min(1.0, height / (2 * radius))), _OPEN, [0.0, 1.0])
+    off, middle = np.zeros(len(V)), (_UPPER + _LOWER) / 2
+    for lid, wanted in ((rings.upper, _UPPER), (rings.lower, _LOWER)):
         column = np.arange(lid.shape[1])
-        share = np.minimum(1.0, np.minimum(column, column[::-1]) / CORNER)
+        share = np.minimum(1.0, np.minimum(column, column[::-1]) / _CORNER)
         near = middle[:, None] + share * (wanted - middle)[:, None]
-        off[lid] = near + far * (FAR[:, None] - near)
+        off[lid] = near + far * (_FAR[:, None] - near)
     return off[rings.vertices]
 
 
@@ -82,7 +85,7 @@ def _bent(camera: Camera, patch: EyePatch, V: np.ndarray, edges: np.ndarray, mov
     """Vertices (n, 3) with the lids' edges moved in depth by their ``moves`` (n,), and skin by what it lacks."""
     px, depth = camera.project(V), camera.depth(V)
     anchors = edges
-    for _ in range(ROUNDS):
+    for _ in range(_ROUNDS):
         targets = camera.unproject(px[anchors], depth[anchors] + moves[anchors])
         pulled = patch.pulled(V, anchors, targets)
         bent = V.copy()
@@ -102,9 +105,9 @@ def _edge_moves(view: np.ndarray, offset: np.ndarray, sight: np.ndarray, radius:
     the one that lay before the other stays there.
     """
     distance2 = ((view[:, None] - view) ** 2).sum(2)
-    weights = np.exp(-0.5 * distance2 / (RELIEF * radius) ** 2)
+    weights = np.exp(-0.5 * distance2 / (_RELIEF * radius) ** 2)
     moves = weights @ _to_sphere(offset, sight, radius * (1 + off)) / weights.sum(1)
-    least, most = (_to_sphere(offset, sight, np.full(len(off), radius * (1 + gap))) for gap in GAPS)
+    least, most = (_to_sphere(offset, sight, np.full(len(off), radius * (1 + gap))) for gap in _GAPS)
     return np.clip(moves, least, most)
 
 
@@ -116,6 +119,6 @@ def _to_sphere(offset: np.ndarray, sight: np.ndarray, radius: np.ndarray, miss: 
     length = np.linalg.norm(sight, axis=1)
     along = (offset * sight).sum(1) / length
     beside2 = (offset**2).sum(1) - along**2
-    depth2, least2 = radius**2 - beside2, (GRAZING * radius) ** 2
+    depth2, least2 = radius**2 - beside2, (_GRAZING * radius) ** 2
     steps = (np.sqrt(np.maximum(depth2, least2)) - along) / length
     return steps if miss is None else np.where(depth2 < least2, miss, steps)

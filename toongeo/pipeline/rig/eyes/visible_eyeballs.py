@@ -10,7 +10,9 @@ from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.render import ScaledOrthographicCamera, rasterize
 
-EXTENT = 2.6  # radii that a picture of one eye spans
+__all__ = ["visible_eyeballs"]
+
+_EXTENT = 2.6  # radii that a picture of one eye spans
 
 
 def visible_eyeballs(
@@ -42,9 +44,9 @@ def visible_eyeballs(
     points, faces = np.vstack(V), np.vstack([f + first for f, first in zip(F, firsts[:-1], strict=True)])
     shares = []
     for side in range(len(SIDES)):
-        extent = EXTENT * eyes.radii[side]
+        extent = _EXTENT * eyes.radii[side]
         camera = ScaledOrthographicCamera.look(yaw, size=size, centre=eyes.centres[side], extent=extent)
         ids = rasterize(np.column_stack([camera.project(points), camera.depth(points)]), faces, size, size).face_ids
         seen = (ids >= starts[side + 1]) & (ids < starts[side + 2])
-        shares.append(seen.sum() / (np.pi * (size / EXTENT) ** 2))
+        shares.append(seen.sum() / (np.pi * (size / _EXTENT) ** 2))
     return np.array(shares)

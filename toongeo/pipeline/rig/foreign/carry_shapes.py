@@ -1,4 +1,7 @@
-"""Displacements of one mesh carried to another that lies on it."""
+"""Displacements of one mesh carried to another that lies on it.
+
+Constants were judged on ICT-FaceKit's head and the template (``benchmarks/register.py``), on no picture.
+"""
 
 import numpy as np
 import scipy.sparse as sp
@@ -7,8 +10,10 @@ from toongeo.geometry import cotangent_laplacian, vertex_normals
 from toongeo.geometry.facing_surface import FACING, FacingSurface
 from toongeo.geometry.operators.factor import factor_spd, solve
 
-NEAR = 0.005  # of the carrying mesh's size: a partner farther away is no evidence
-PULL = 1e-3  # of a doubtful partner, against a plate's resistance to bending
+__all__ = ["carry_shapes"]
+
+_NEAR = 0.005  # of the carrying mesh's size: a partner farther away is no evidence
+_PULL = 1e-3  # of a doubtful partner, against a plate's resistance to bending
 
 
 def carry_shapes(
@@ -42,7 +47,7 @@ def carry_shapes(
     front = F_carrier[outer[F_carrier].all(1)]
     skin = FacingSurface(V_carrier, front)
     triangles, bary, cosines = skin.closest(V, N)
-    far = np.linalg.norm(skin.points(triangles, bary) - V, axis=1) > NEAR * size
+    far = np.linalg.norm(skin.points(triangles, bary) - V, axis=1) > _NEAR * size
     border = skin.at_border(triangles, bary)
     partnered = (cosines >= FACING) & ~far & ~border
     partners = front[triangles]
@@ -73,7 +78,7 @@ def _bent_along(V: np.ndarray, F: np.ndarray, free: np.ndarray, shapes: np.ndarr
     area = np.maximum(area / area.mean(), 0.1)
     rows = (L.T @ sp.diags_array(1 / area) @ L).tocsr()[free]
     held = np.setdiff1d(np.arange(len(V)), free)
-    doubtful = sp.diags_array(PULL * area[free])
+    doubtful = sp.diags_array(_PULL * area[free])
     flat = shapes.transpose(1, 0, 2).reshape(len(V), -1).astype(np.float64)
     right = doubtful @ flat[free] - rows[:, held] @ flat[held]
     found = solve(factor_spd(rows[:, free] + doubtful), right)

@@ -1,4 +1,7 @@
-"""Blinks that leave no gap on a registered face."""
+"""Blinks that leave no gap on a registered face.
+
+Constants were judged on ICT-FaceKit's head and the template (``benchmarks/register.py``), on no picture.
+"""
 
 import numpy as np
 
@@ -6,8 +9,10 @@ from toongeo.geometry import laplacian_align
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import rim_path
 
-OVERLAP = 0.5  # of the model's: how far an upper lid comes down over the lower one, at least
-EVEN = 1e-3  # of an eye's width: a gap that is left alone
+__all__ = ["close_gaps"]
+
+_OVERLAP = 0.5  # of the model's: how far an upper lid comes down over the lower one, at least
+_EVEN = 1e-3  # of an eye's width: a gap that is left alone
 
 
 def close_gaps(model: MorphableModel, neutral: np.ndarray, closed: np.ndarray, side: str) -> np.ndarray:
@@ -34,9 +39,9 @@ def close_gaps(model: MorphableModel, neutral: np.ndarray, closed: np.ndarray, s
     upper, lower = (rim_path(model, f"lid_{lid}_{side}") for lid in ("upper", "lower"))
     wanted, _, width = _heights(model.mean, model.mean + blink, upper, lower)
     found, up, own_width = _heights(neutral, closed, upper, lower)
-    drop = np.maximum(found - OVERLAP * np.minimum(wanted, 0.0) * own_width / width, 0.0)
+    drop = np.maximum(found - _OVERLAP * np.minimum(wanted, 0.0) * own_width / width, 0.0)
     drop[[0, -1]] = 0.0  # the corners, which the lids share
-    if drop.max() <= EVEN * own_width:
+    if drop.max() <= _EVEN * own_width:
         return closed
     around = model.region(f"eye_{side}").copy()
     if f"socket_{side}" in model.regions:

@@ -1,4 +1,7 @@
-"""Eyeballs, teeth and what else hangs on nothing, in the rig of a foreign head."""
+"""Eyeballs, teeth and what else hangs on nothing, in the rig of a foreign head.
+
+Constants were judged on ICT-FaceKit's head and the template (``benchmarks/register.py``), on no picture.
+"""
 
 from dataclasses import dataclass
 
@@ -9,11 +12,13 @@ from toongeo.geometry.operators.vertex_components import vertex_components
 from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model.ibug68 import PARTS
 
-ROUND = 0.1  # of the radius: how far a ball's vertices may be off the sphere, root mean square
-BALL = 0.25, 0.75  # least and greatest radius of an eyeball, in widths of the eye
-ONE_PART = 0.7  # share of a part's vertices by which it belongs to one row of teeth, or to the tongue
-ROOTS = 0.25  # share of a part's vertices
-NEAR = 1.0  # widths of the eye from the middle of its landmarks to the middle of the ball
+__all__ = ["MouthParts", "settle_loose_parts"]
+
+_ROUND = 0.1  # of the radius: how far a ball's vertices may be off the sphere, root mean square
+_BALL = 0.25, 0.75  # least and greatest radius of an eyeball, in widths of the eye
+_ONE_PART = 0.7  # share of a part's vertices by which it belongs to one row of teeth, or to the tongue
+_ROOTS = 0.25  # share of a part's vertices
+_NEAR = 1.0  # widths of the eye from the middle of its landmarks to the middle of the ball
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +88,7 @@ def _holders(part: np.ndarray, body: np.ndarray) -> np.ndarray:
     grows, not the brow to which its tip is near.
     """
     distance, nearest = cKDTree(body).query(part)
-    roots = np.flatnonzero(distance <= np.quantile(distance, ROOTS))
+    roots = np.flatnonzero(distance <= np.quantile(distance, _ROOTS))
     return np.asarray(nearest[roots[cKDTree(part[roots]).query(part)[1]]])
 
 
@@ -96,13 +101,13 @@ def _in_the_mouth(part: np.ndarray, within: MouthParts) -> np.ndarray:
     found = [cKDTree(within.vertices[mask]).query(part) for mask in within.parts]
     nearest = np.argmin([distance for distance, _ in found], axis=0)
     share = np.bincount(nearest, minlength=len(found)) / len(part)
-    if share.max() > ONE_PART:
+    if share.max() > _ONE_PART:
         nearest[:] = share.argmax()
     moved = np.zeros((len(within.shapes), len(part), 3))
     for k, (mask, (_, index)) in enumerate(zip(within.parts, found, strict=True)):
         chosen = nearest == k
         moved[:, chosen] = within.shapes[:, np.flatnonzero(mask)[index[chosen]]]
-    if share.max() > ONE_PART and len(part) > 3:
+    if share.max() > _ONE_PART and len(part) > 3:
         moved = np.stack([_rigid(part, shape) for shape in moved])
     return moved
 
@@ -117,13 +122,13 @@ def _is_eyeball(part: np.ndarray, points: np.ndarray) -> bool:
     centre = solution[:3]
     radius = np.sqrt(max(solution[3] + centre @ centre, 0.0))
     off = np.linalg.norm(x - centre, axis=1) - radius
-    if not np.sqrt((off**2).mean()) < ROUND * radius:
+    if not np.sqrt((off**2).mean()) < _ROUND * radius:
         return False
     for eye in ("eye_left", "eye_right"):
         corners = points[PARTS[eye][[0, 3]]]
         width = np.linalg.norm(corners[1] - corners[0])
         far = np.linalg.norm(centre + middle - corners.mean(0))
-        if BALL[0] * width < radius < BALL[1] * width and far < NEAR * width:
+        if _BALL[0] * width < radius < _BALL[1] * width and far < _NEAR * width:
             return True
     return False
 

@@ -1,6 +1,8 @@
-"""A closed mouth without teeth in its slit."""
+"""A closed mouth without teeth in its slit.
 
-import dataclasses
+Constants were judged on the seven examples and 15 caricatures (``benchmarks/lips.py``).
+"""
+
 import time
 from functools import lru_cache
 
@@ -9,15 +11,18 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from toongeo.geometry import adjacency
+from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.model import MorphableModel
-from toongeo.model.anatomy.lip_line import LipLine, along, interpolated, lip_line
+from toongeo.model.anatomy.lip_line import LipLine, lip_line
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.rig import Rig
 
-CLOSED = 0.06  # of the mouth's width: a mouth whose lips are less apart in the picture is drawn closed
-ORDERED = 0.01  # of the mouth's width: lips that are less apart in the picture keep some of their distance in depth
-OVERLAP = 0.025  # of the mouth's width: by which the inner sides of closed lips overlap
-BEHIND_MM = (0.1, 0.8, 4.0, 10.0)  # on the template, from the line: where the overlap begins, is full, fades, ends
+__all__ = ["close_slit"]
+
+_CLOSED = 0.06  # of the mouth's width: a mouth whose lips are less apart in the picture is drawn closed
+_ORDERED = 0.01  # of the mouth's width: lips that are less apart in the picture keep some of their distance in depth
+_OVERLAP = 0.025  # of the mouth's width: by which the inner sides of closed lips overlap
+_BEHIND_MM = (0.1, 0.8, 4.0, 10.0)  # on the template, from the line: where the overlap begins, is full, fades, ends
 
 
 def close_slit(face: AlignedFace, rig: Rig) -> Rig:
@@ -40,19 +45,18 @@ def close_slit(face: AlignedFace, rig: Rig) -> Rig:
     """
     started = time.perf_counter()
     line, neutral = lip_line(face.model), rig.neutral.copy()
-    at_upper, at_lower = along(neutral[line.upper]), along(neutral[line.lower])
+    at_upper, at_lower = arc_shares(neutral[line.upper]), arc_shares(neutral[line.lower])
     ray, up = _ray_and_up(face, line, neutral)
     width = float(np.linalg.norm(neutral[line.upper[-1]] - neutral[line.upper[0]]))
     apart = interpolated(at_lower, at_upper, neutral[line.upper]) - neutral[line.lower]
-    if np.abs(apart @ up).mean() > CLOSED * width:
+    if np.abs(apart @ up).mean() > _CLOSED * width:
         return rig
     # Half of the way each, as far as the lips are in order.
-    depth = (apart @ ray) * np.clip(apart @ up / (ORDERED * width), 0, 1) / 2
+    depth = (apart @ ray) * np.clip(apart @ up / (_ORDERED * width), 0, 1) / 2
     to_upper = -np.interp(at_upper, at_lower, depth)
     neutral[line.follows] += line.spread @ (np.r_[to_upper, depth[1:-1]][:, None] * ray)
-    _overlap(face.model, line, neutral, up, OVERLAP * width)
-    report = rig.report | {"seconds": rig.report["seconds"] + time.perf_counter() - started}
-    return dataclasses.replace(rig, neutral=neutral, report=report)
+    _overlap(face.model, line, neutral, up, _OVERLAP * width)
+    return rig.changed(started, neutral=neutral)
 
 
 def _ray_and_up(face: AlignedFace, line: LipLine, V: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -69,12 +73,12 @@ def _ray_and_up(face: AlignedFace, line: LipLine, V: np.ndarray) -> tuple[np.nda
 
 def _overlap(model: MorphableModel, line: LipLine, V: np.ndarray, up: np.ndarray, overlap: float) -> None:
     """Bring the inner sides of the lips together behind the line where they meet, in place."""
-    at_upper, at_lower = along(V[line.upper]), along(V[line.lower])
+    at_upper, at_lower = arc_shares(V[line.upper]), arc_shares(V[line.lower])
     meeting = interpolated(at_lower, at_upper, V[line.upper] @ up[:, None])[:, 0] + V[line.lower] @ up
     for inner, column, share, path, sign in zip(
         *_inner_sides(model), (line.upper, line.lower), (1.0, -1.0), strict=True
     ):
-        at = along(V[path])
+        at = arc_shares(V[path])
         target = np.interp(at, at_lower, meeting / 2) - sign * overlap
         way = target - V[path] @ up
         V[inner] += (share * way[column])[:, None] * up
@@ -88,7 +92,7 @@ def _inner_sides(model: MorphableModel) -> tuple[list[np.ndarray], list[np.ndarr
     (to_upper, upper), (to_lower, lower) = (
         cKDTree(model.mean[path]).query(model.mean[wall]) for path in (line.upper, line.lower)
     )
-    share = np.interp(np.minimum(to_upper, to_lower), BEHIND_MM, [0, 1, 1, 0])
+    share = np.interp(np.minimum(to_upper, to_lower), _BEHIND_MM, [0, 1, 1, 0])
     sides = _hanging_on(model, line, wall)
     masks = [(sides == side) & (share > 0) for side in (0, 1)]
     return (

@@ -6,6 +6,8 @@ from toongeo.pipeline.rig.mouth.hang_teeth import hang_teeth
 from toongeo.pipeline.rig.mouth.seal_lips import seal_lips
 from toongeo.pipeline.rig.rig import Rig
 
+__all__ = ["fit_mouth"]
+
 
 def fit_mouth(face: AlignedFace, rig: Rig) -> Rig:
     """Give lips, teeth and tongue the contacts that deformation transfer does not know of.
@@ -23,6 +25,9 @@ def fit_mouth(face: AlignedFace, rig: Rig) -> Rig:
     Returns
     -------
     Rig
-        A new one; its report has ``lips_closure``, in percent.
+        A new one; its report has ``lips_closure``, in percent. The same, if the model has no ``mouth_cavity``, at
+        whose border the lips end.
     """
+    if not face.model.has("mouth_cavity"):
+        return rig
     return hang_teeth(face, seal_lips(face, close_slit(face, rig)))

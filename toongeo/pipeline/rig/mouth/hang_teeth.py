@@ -1,6 +1,8 @@
-"""Teeth and tongue that move with this face's jaw and stay in its mouth."""
+"""Teeth and tongue that move with this face's jaw and stay in its mouth.
 
-import dataclasses
+Constants were judged on the seven examples and 15 caricatures (``benchmarks/lips.py``).
+"""
+
 import time
 from functools import lru_cache
 
@@ -14,13 +16,16 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
 from toongeo.pipeline.rig.rig import Rig
 
-STILL_MM = 0.05  # on the template: what an expression moves less than this it holds still
-NEAR_MM = 60.0  # on the template: skin that teeth could come through lies so near to the lips
-EVERY = 4  # every so manieth vertex of teeth and tongue is looked at first
-COVER_MM = 3.0  # seen from the front, skin so near to a point covers it
-NEIGHBOURS = 4
-CLEAR_MM = 1.0  # what is farther behind the skin has not come out
-SHARES = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0)  # of the way back to the middle of the tongue that are tried
+__all__ = ["hang_teeth"]
+
+_NEEDS = (*TEETH_AND_TONGUE, "mouth_cavity", "jaw", "jawOpen", "mouthClose")
+_STILL_MM = 0.05  # on the template: what an expression moves less than this it holds still
+_NEAR_MM = 60.0  # on the template: skin that teeth could come through lies so near to the lips
+_EVERY = 4  # every so manieth vertex of teeth and tongue is looked at first
+_COVER_MM = 3.0  # seen from the front, skin so near to a point covers it
+_NEIGHBOURS = 4  # skin vertices beside a point, of which the foremost counts
+_CLEAR_MM = 1.0  # what is farther behind the skin has not come out
+_SHARES = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0)  # of the way back to the middle of the tongue that are tried
 
 
 def hang_teeth(face: AlignedFace, rig: Rig) -> Rig:
@@ -41,14 +46,15 @@ def hang_teeth(face: AlignedFace, rig: Rig) -> Rig:
     Returns
     -------
     Rig
-        A new one; only teeth and tongue differ.
+        A new one; only teeth and tongue differ. The same, if the model lacks one of these parts.
     """
+    if not face.model.has(*_NEEDS):
+        return rig
     started = time.perf_counter()
     neutral, deltas = rig.neutral.copy(), rig.deltas.copy()
     _follow_chin(face.model, rig.names, deltas)
     _keep_inside(face.model, rig.names, neutral, deltas)
-    report = rig.report | {"seconds": rig.report["seconds"] + time.perf_counter() - started}
-    return dataclasses.replace(rig, neutral=neutral, deltas=deltas, report=report)
+    return rig.changed(started, neutral=neutral, deltas=deltas)
 
 
 def _follow_chin(model: MorphableModel, names: tuple[str, ...], deltas: np.ndarray) -> None:
@@ -61,7 +67,7 @@ def _follow_chin(model: MorphableModel, names: tuple[str, ...], deltas: np.ndarr
         if name.startswith("jaw"):
             ratio = float((shape[chin] * deltas[k, chin]).sum() / (shape[chin] ** 2).sum())
         for part in held.values():
-            if np.abs(shape[part]).max() < STILL_MM:
+            if np.abs(shape[part]).max() < _STILL_MM:
                 deltas[k, part] = 0.0
             else:
                 deltas[k, part] += ratio * shape[part].mean(0) - deltas[k, part].mean(0)
@@ -71,12 +77,12 @@ def _keep_inside(model: MorphableModel, names: tuple[str, ...], neutral: np.ndar
     """Draw parts that come through the skin back into the mouth, in place."""
     skin = _skin_near_mouth(model)
     held = {part: np.flatnonzero(model.region(part)) for part in TEETH_AND_TONGUE}
-    some = np.concatenate([part[::EVERY] for part in held.values()])
-    of_part = np.repeat(TEETH_AND_TONGUE, [len(part[::EVERY]) for part in held.values()])
+    some = np.concatenate([part[::_EVERY] for part in held.values()])
+    of_part = np.repeat(TEETH_AND_TONGUE, [len(part[::_EVERY]) for part in held.values()])
     refuge = neutral[held["tongue"]].mean(0)
     jaw, close = names.index("jawOpen"), names.index("mouthClose")
     mouth = np.r_[lip_line(model).vertices, some]
-    for k in np.flatnonzero(np.abs(deltas[:, mouth]).max((1, 2)) > CLEAR_MM):
+    for k in np.flatnonzero(np.abs(deltas[:, mouth]).max((1, 2)) > _CLEAR_MM):
         V = neutral + deltas[k] + (deltas[jaw] if k == close else 0.0)
         for part in np.unique(of_part[_near_front(V[skin], V[some])]):
             if part == "tongue" and names[k] == "tongueOut":
@@ -91,9 +97,9 @@ def _keep_inside(model: MorphableModel, names: tuple[str, ...], neutral: np.ndar
 def _near_front(skin: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Which of the points (k, 3) the skin (s, 3) does not cover well, as seen from the front."""
     tree = cKDTree(skin[:, :2], balanced_tree=False, compact_nodes=False)
-    distance, near = tree.query(points[:, :2], NEIGHBOURS, distance_upper_bound=COVER_MM)
+    distance, near = tree.query(points[:, :2], _NEIGHBOURS, distance_upper_bound=_COVER_MM)
     front = np.where(np.isfinite(distance), np.r_[skin[:, 2], 0.0][near], -np.inf).max(1)
-    return np.isfinite(front) & (points[:, 2] > front - CLEAR_MM)
+    return np.isfinite(front) & (points[:, 2] > front - _CLEAR_MM)
 
 
 def _way_back(model: MorphableModel, V: np.ndarray, points: np.ndarray, refuge: np.ndarray) -> np.ndarray:
@@ -102,8 +108,8 @@ def _way_back(model: MorphableModel, V: np.ndarray, points: np.ndarray, refuge: 
     if inside.all():
         return np.zeros(3)
     whole = refuge - points.mean(0)
-    telling = np.vstack([points[~inside], points[::EVERY]])
-    for share in SHARES:
+    telling = np.vstack([points[~inside], points[::_EVERY]])
+    for share in _SHARES:
         if enclosed(model, V, telling + share * whole).all():
             break
     return np.asarray(share * whole)
@@ -111,5 +117,5 @@ def _way_back(model: MorphableModel, V: np.ndarray, points: np.ndarray, refuge: 
 
 @lru_cache(maxsize=4)
 def _skin_near_mouth(model: MorphableModel) -> np.ndarray:
-    near = cKDTree(model.mean[lip_line(model).vertices]).query(model.mean)[0] < NEAR_MM
+    near = cKDTree(model.mean[lip_line(model).vertices]).query(model.mean)[0] < _NEAR_MM
     return np.flatnonzero(near & model.region("face"))

@@ -1,0 +1,1 @@
+"""Inner parts of the rasterizer: two ways to the nearest face of each pixel."""
