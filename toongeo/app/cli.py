@@ -11,6 +11,9 @@ from toongeo.app.bench.commands import add_bench
 __all__ = ["main"]
 
 
+_SCHEME = "of the landmarks: ibug68 (default), ibug51, ibug49 or mediapipe478, all in px"
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line.
 
@@ -60,6 +63,7 @@ def _parser() -> argparse.ArgumentParser:
     hair = make.add_mutually_exclusive_group()
     hair.add_argument("--hair-mask", type=Path, metavar="FILE", help="picture of IMAGE's size, white where hair is")
     hair.add_argument("--no-hair", action="store_true", help="build no hair; it stays painted on the head")
+    make.add_argument("--scheme", default="ibug68", metavar="NAME", help=_SCHEME)
     make.set_defaults(run=_make)
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
@@ -71,7 +75,7 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument("--no-open", action="store_true", help="only print where the page is")
     view.set_defaults(run=_view)
     rig = commands.add_parser("rig", help="give a neutral head of any topology the expressions")
-    rig.add_argument("mesh", type=Path, metavar="MESH", help=".obj, mouth closed and eyes open")
+    rig.add_argument("mesh", type=Path, metavar="MESH", help=".obj .ply .stl .off .glb, mouth closed and eyes open")
     rig.add_argument(
         "--landmarks",
         type=Path,
@@ -95,6 +99,7 @@ def _add_drive(commands: Any) -> None:
     drive.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4 or .glb")
     drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
     drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
+    drive.add_argument("--scheme", default="ibug68", metavar="NAME", help=_SCHEME)
     drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
     drive.set_defaults(run=_drive)
 
@@ -125,6 +130,7 @@ def _make(options: argparse.Namespace) -> None:
         photometric=options.photometric,
         hair=not options.no_hair,
         hair_mask=options.hair_mask,
+        scheme=options.scheme,
         format=options.format,
         options=_saving(options),
     )
@@ -169,6 +175,7 @@ def _drive(options: argparse.Namespace) -> None:
         size=options.size,
         fps=options.fps,
         take_fps=options.take_fps,
+        scheme=options.scheme,
     )
 
 

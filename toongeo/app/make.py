@@ -27,6 +27,7 @@ def make(
     photometric: bool = False,
     hair: bool = True,
     hair_mask: Path | None = None,
+    scheme: str = "ibug68",
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> Avatar:
@@ -44,7 +45,7 @@ def make(
     saving = {"crop": crop, **(options or {})}
     writer_for(output, format, saving)
     check_output(output, {"image": image, "landmarks": landmarks, "hair_mask": hair_mask}, format)
-    img, points = read_image(image), read_landmarks(landmarks)
+    img, points = read_image(image), read_landmarks(landmarks, scheme=scheme)
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
         def announce(stage: str) -> None:
@@ -59,6 +60,7 @@ def make(
             hair=hair,
             hair_mask=hair_mask,
             texture_size=texture_size,
+            scheme=scheme,
             progress=announce,
         )
         bar.update(len(STAGES) - bar.n)

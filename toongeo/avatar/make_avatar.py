@@ -3,12 +3,13 @@
 import dataclasses
 import time
 from collections.abc import Callable, Mapping
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, landmark_errors, shape_warnings
 from toongeo.caricature import caricature_rig
 from toongeo.caricature.align_caricature import align_caricature
@@ -33,6 +34,7 @@ from toongeo.pipeline import (
     photometric_fit,
     snap_eyes,
 )
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser, HairModeler
@@ -61,6 +63,7 @@ def make_avatar(
     hair: bool | HairModeler = True,
     hair_mask: GivenMask = None,
     texture_size: int = 1024,
+    scheme: Any = "ibug68",
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
     """A textured, rigged, animatable 3D face from one picture (the whole way of Pan et al. 2024).
@@ -71,7 +74,8 @@ def make_avatar(
     landmarks : (68, 2) float, px
         iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
     model : MorphableModel, optional
-        :func:`toongeo.default_model` unless another is given.
+        :func:`toongeo.default_model` unless another is given. What it does not have (eyeballs, teeth, expressions,
+        texture coordinates ...) the avatar does without; ``report.warnings`` says what.
     parser : FaceParser, optional
         Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
     snap : bool
@@ -99,6 +103,9 @@ def make_avatar(
         Pixels of hair, made by hand or by another program, in place of :func:`toongeo.find_hair`: bool, or 0..255.
     texture_size : int
         Side of the texture atlas in texels.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}, or a table
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`. With a table of points on the model (as of
+        :class:`toongeo.FitOptions`) the face is fitted to these, and then stands for its 68 landmarks.
     progress : callable, optional
         Called with the name of each stage before it starts: one of ``STAGES``.
 
@@ -124,7 +131,12 @@ def make_avatar(
 
     clock.start("fit")
     model = model or default_model()
-    fit = fit_3dmm(img, landmarks, model=model)
+    if isinstance(scheme, str):
+        landmarks = ibug_landmarks(landmarks, scheme)
+        fit = fit_3dmm(img, landmarks, model=model)
+    else:
+        fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
+        landmarks = fit.project(fit.vertices[fit.landmark_vertices])
     clock.start("parse")
     drawn, faults = read_mask(hair_mask, img.shape)
     parse = parse_face(img, landmarks, fit, parser=parser, hair_mask=drawn)
@@ -144,6 +156,7 @@ def make_avatar(
     # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
     face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - at_rest.vertices))
     shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
+    aligned = landmark_errors(face, landmarks)  # before points under hair give way to it
     head = HairyHead(face, shapes, None, faults)
     if hair and not faults:
         clock.start("hair")
@@ -159,11 +172,12 @@ def make_avatar(
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(
         coarse=landmark_errors(fit, landmarks),
-        aligned=landmark_errors(face, landmarks),
+        aligned=aligned,
         quality=quality,
         seconds=clock.stop(),
         warnings=(
             *fit.report.warnings,
+            *missing_parts(model),
             *shape_warnings(face, eyes, quality),
             *(f"hair is painted on the head: {reason}" for reason in head.reasons),
         ),

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.model.default_model import default_model
 from toongeo.protocols import FittedFace
 
 __all__ = ["completed_landmarks"]
-
-Floats = NDArray[np.float64]
 
 
 def completed_landmarks(landmarks: Floats, fit: FittedFace) -> Floats:

@@ -8,10 +8,11 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo.arrays import Singles
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_image import check_image
-from toongeo.io.landmark_array import landmark_array
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.completed_landmarks import completed_landmarks
 from toongeo.pipeline.parse.given_hair import given_hair
 from toongeo.pipeline.parse.hair.hair_model import hair_model
@@ -25,8 +26,6 @@ from toongeo.protocols import FittedFace, HairMask
 
 __all__ = ["find_hair"]
 
-Field = NDArray[np.float32]
-
 
 def find_hair(
     img: NDArray[np.uint8],
@@ -34,6 +33,7 @@ def find_hair(
     fit: FittedFace | None = None,
     *,
     hair_mask: ArrayLike | str | os.PathLike[str] | None = None,
+    scheme: str = "ibug68",
 ) -> HairMask:
     """Which pixels of a picture are hair, and whether hair can be built from them.
 
@@ -53,6 +53,8 @@ def find_hair(
         The face as `fit_3dmm` found it; it is fitted to the landmarks if None.
     hair_mask : array_like or path, optional
         A mask made elsewhere, which is believed: (H, W) bool or 0..255, or a picture of such.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -74,7 +76,7 @@ def find_hair(
     (True, True)
     """
     check_image(img)
-    given = landmark_array(landmarks)
+    given = ibug_landmarks(landmarks, scheme)
     if hair_mask is not None:
         return given_hair(hair_mask, img.shape)
     face = fit if fit is not None else fit_3dmm(None, given)
@@ -97,7 +99,7 @@ def _enlarged(view: WorkingView, mask: NDArray[np.bool_], shape: tuple[int, ...]
     return full
 
 
-def _resized(view: WorkingView, field: NDArray[np.generic]) -> Field:
+def _resized(view: WorkingView, field: NDArray[np.generic]) -> Singles:
     width, height = (int(n) for n in view.size)
     larger = width > field.shape[1]
     method = cv2.INTER_LINEAR if larger else cv2.INTER_AREA

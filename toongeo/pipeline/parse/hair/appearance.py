@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
 from toongeo.pipeline.parse.hair.superpixels import LIGHTNESS, Superpixels
 from toongeo.pipeline.parse.masks import grown, signed_distance
 
 __all__ = ["appearance"]
 
-Field = NDArray[np.float32]
 
 _FAR = 0.15  # head sizes off the skull: there is ground, or clothes
 _RING = 0.05  # head sizes about the skull, where hair begins
@@ -24,7 +23,7 @@ _FEWEST = 20  # px for a sample of colours
 _SAMPLES = 3000  # px at most for a sample
 
 
-def appearance(zones: HeadZones, patches: Superpixels) -> dict[str, Field]:
+def appearance(zones: HeadZones, patches: Superpixels) -> dict[str, Singles]:
     """Numbers (k,) by name. Left and right are alike in all, so that a mirrored picture gives the same."""
     lab, mean = patches.lab, patches.mean
     edge = np.zeros(zones.skull.shape, bool)
@@ -79,7 +78,7 @@ def appearance(zones: HeadZones, patches: Superpixels) -> dict[str, Field]:
     return found | {name: np.full(len(colours), value, np.float32) for name, value in whole.items()}
 
 
-def _tones(sample: Field, count: int) -> Field:
+def _tones(sample: Singles, count: int) -> Singles:
     """A few colours (m, 3) that stand for a sample (n, 3); rare ones are left out."""
     if len(sample) < 12:
         return np.zeros((0, 3), np.float32)
@@ -92,7 +91,7 @@ def _tones(sample: Field, count: int) -> Field:
     return np.asarray(centres[share > 0.06], np.float32)
 
 
-def _distance(lab: Field, tones: Field) -> Field:
+def _distance(lab: Singles, tones: Singles) -> Singles:
     """To the nearest of some colours (h, w); far from all if there are none."""
     if len(tones) == 0:
         return np.full(lab.shape[:2], 60, np.float32)
@@ -101,12 +100,12 @@ def _distance(lab: Field, tones: Field) -> Field:
     return np.sqrt(np.maximum(square, 0)).reshape(lab.shape[:2]).astype(np.float32)
 
 
-def _texture(light: Field, zones: HeadZones) -> dict[str, Field]:
+def _texture(light: Singles, zones: HeadZones) -> dict[str, Singles]:
     """Contrast, and how far it runs in one direction (structure tensor), and in that of hair from the crown."""
     smooth = cv2.GaussianBlur(light, (0, 0), 0.8)
     gx, gy = cv2.Sobel(smooth, cv2.CV_32F, 1, 0), cv2.Sobel(smooth, cv2.CV_32F, 0, 1)
     outwards = np.arctan2(-zones.up, np.abs(zones.across)) - np.pi / 2
-    found: dict[str, Field] = {"rough fine": np.abs(light - cv2.GaussianBlur(light, (0, 0), 1.5))}
+    found: dict[str, Singles] = {"rough fine": np.abs(light - cv2.GaussianBlur(light, (0, 0), 1.5))}
     for name, scale in (("fine", 2.0), ("broad", 5.0)):
         xx, yy, xy = (cv2.GaussianBlur(g, (0, 0), scale) for g in (gx * gx, gy * gy, gx * gy))
         energy = xx + yy

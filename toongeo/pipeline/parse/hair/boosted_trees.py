@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo._read_only import read_only
+from toongeo.arrays import Singles
 
 __all__ = ["BoostedTrees"]
-
-Field = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,9 +30,9 @@ class BoostedTrees:
     """
 
     features: NDArray[np.uint8]
-    thresholds: Field
-    leaves: Field
-    start: Field
+    thresholds: Singles
+    leaves: Singles
+    start: Singles
 
     def __post_init__(self) -> None:
         inner, ends = self.features.shape[2], self.leaves.shape[2]
@@ -41,7 +40,7 @@ class BoostedTrees:
             raise ValueError(f"leaves: expected one more than inner nodes, a power of two, got {ends} and {inner}")
         read_only(self, "features", "thresholds", "leaves", "start")
 
-    def __call__(self, X: Field) -> Field:
+    def __call__(self, X: Singles) -> Singles:
         """Probabilities (n, c) of rows (n, f)."""
         rounds, classes, inner = self.features.shape
         depth = (inner + 1).bit_length() - 1

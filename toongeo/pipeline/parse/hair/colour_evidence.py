@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
+
+from toongeo.arrays import Singles
 
 __all__ = ["colour_evidence"]
 
-Field = NDArray[np.float32]
 
 _LEVELS = 16  # a channel
 _STEP = 8.0  # CIELAB units a level
@@ -16,7 +16,7 @@ _BLUR = 0.7  # levels
 _FLOOR = 2e-5  # share of a colour that neither side shows
 
 
-def colour_evidence(lab: Field, inside: Field, outside: Field) -> Field:
+def colour_evidence(lab: Singles, inside: Singles, outside: Singles) -> Singles:
     """Log ratio (h, w) of two colour histograms of a CIELAB picture (h, w, 3), by weights (h, w) of its pixels."""
     cell = np.clip((lab + np.array([0, 64, 64], np.float32)) / _STEP, 0, _LEVELS - 1).astype(np.intp)
     codes = ((cell[..., 0] * _LEVELS + cell[..., 1]) * _LEVELS + cell[..., 2]).ravel()

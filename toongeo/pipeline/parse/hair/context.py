@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.pipeline.parse.hair.colour_evidence import colour_evidence
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
 from toongeo.pipeline.parse.hair.superpixels import LIGHTNESS, Superpixels
 
 __all__ = ["context"]
 
-Field = NDArray[np.float32]
 
 _NEAR, _WIDE = 6.0, 20.0  # px of the view
 _SURE, _NOT = 0.6, 0.05  # posterior of sure hair and of what is surely none
 
 
-def context(zones: HeadZones, patches: Superpixels, guess: Field) -> dict[str, Field]:
+def context(zones: HeadZones, patches: Superpixels, guess: Singles) -> dict[str, Singles]:
     """Numbers (k,) by name, from the first posterior (k, 3) of other, hair and hat."""
     cover = guess[:, 1] + guess[:, 2]
     field = cover[patches.labels]
@@ -48,7 +47,7 @@ def context(zones: HeadZones, patches: Superpixels, guess: Field) -> dict[str, F
     }
 
 
-def _mirrored(zones: HeadZones, layers: Field) -> Field:
+def _mirrored(zones: HeadZones, layers: Singles) -> Singles:
     """Layers (h, w, c) as they are on the other side of the face's middle line."""
     height, width = zones.across.shape
     # across and up are linear in x and y: across = gx x + gy y + c, with a gradient of one over the face's length

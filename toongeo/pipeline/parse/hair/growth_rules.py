@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
 from toongeo.pipeline.parse.masks import Mask, grown, signed_distance
 
 __all__ = ["growth_rules"]
 
-Field = NDArray[np.float32]
 
 # Shares of the head's size, or of its square for areas.
 _OPEN = 0.008  # thinner lines are no hair
@@ -23,7 +22,7 @@ _HANG = 0.9  # how far hair hangs below the chin
 _INWARDS, _OUTWARDS = 0.35, 1.0  # px that the edges of hanging hair move a row, towards the neck and away from it
 
 
-def growth_rules(mask: Mask, zones: HeadZones, posterior: Field) -> Mask:
+def growth_rules(mask: Mask, zones: HeadZones, posterior: Singles) -> Mask:
     """A mask (h, w) without what cannot be hair or hat."""
     mask = _opened(mask, _OPEN * zones.head)
     mask &= ~(zones.hull & (zones.up < -0.25) & grown(zones.hull, -0.06 * zones.head))
@@ -53,7 +52,7 @@ def _without_brows(mask: Mask, zones: HeadZones) -> Mask:
     return rest
 
 
-def _large_pieces(mask: Mask, zones: HeadZones, posterior: Field) -> Mask:
+def _large_pieces(mask: Mask, zones: HeadZones, posterior: Singles) -> Mask:
     """Pieces that are large, likely, and on or beside the head, not only below it."""
     count, pieces, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=4)
     largest = stats[1:, cv2.CC_STAT_AREA].max(initial=0)

@@ -6,18 +6,18 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.pipeline.parse.masks import Mask, grown
 
 __all__ = ["hair_alpha"]
 
-Field = NDArray[np.float32]
 
 _BAND = 0.025  # head sizes on either side of the outline that may be mixed
 _RADIUS = 0.03  # head sizes: window of the filter
 _SOFTNESS = 1e-3  # squared colour differences that count as noise
 
 
-def hair_alpha(pixels: NDArray[np.uint8], mask: Mask, head: float) -> Field:
+def hair_alpha(pixels: NDArray[np.uint8], mask: Mask, head: float) -> Singles:
     """How far hair covers each pixel (h, w), in [0, 1]: the mask by a guided filter (He et al. 2013) along its outline.
 
     Parameters

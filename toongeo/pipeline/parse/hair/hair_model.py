@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.model.data_path import data_path
 from toongeo.pipeline.parse.hair.appearance import appearance
 from toongeo.pipeline.parse.hair.boosted_trees import BoostedTrees
@@ -17,8 +17,6 @@ from toongeo.pipeline.parse.hair.superpixels import Superpixels
 
 __all__ = ["HairModel", "hair_model"]
 
-Field = NDArray[np.float32]
-
 
 @dataclass(frozen=True, eq=False)
 class HairModel:
@@ -27,7 +25,7 @@ class HairModel:
     first: BoostedTrees
     second: BoostedTrees
 
-    def __call__(self, zones: HeadZones, patches: Superpixels) -> tuple[Field, Field]:
+    def __call__(self, zones: HeadZones, patches: Superpixels) -> tuple[Singles, Singles]:
         """The guess and the answer: probabilities (k, 3) of other, hair and hat for each superpixel."""
         numbers = np.column_stack(list(appearance(zones, patches).values()))
         guess = self.first(numbers)

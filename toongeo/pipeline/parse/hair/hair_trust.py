@@ -6,14 +6,13 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
 from toongeo.pipeline.parse.masks import Mask, grown
 
 __all__ = ["RULES", "HairMeasures", "distrust", "hair_measures"]
 
-Field = NDArray[np.float32]
 
 _TOP = 0.3  # faces above the brows that hair must reach to top a column of the head
 
@@ -42,7 +41,7 @@ class HairMeasures:
     hat: float
 
 
-def hair_measures(mask: Mask, other: Mask, zones: HeadZones, posterior: Field, hat: Field) -> HairMeasures:
+def hair_measures(mask: Mask, other: Mask, zones: HeadZones, posterior: Singles, hat: Singles) -> HairMeasures:
     """Measures of a mask of hair and hat (h, w), and of another one; posteriors (h, w) of both, and of hats alone."""
     union = int((mask | other).sum())
     ring = grown(mask, 0.06 * zones.head) & ~grown(mask, 0.015 * zones.head)
@@ -63,14 +62,15 @@ def hair_measures(mask: Mask, other: Mask, zones: HeadZones, posterior: Field, h
     )
 
 
-# Name of the measure, least and largest value that is trusted, and what is said otherwise.
+# Name of the measure, least and largest value that is trusted, and what is said otherwise. Agreement, inside and outside
+# were set on the 25 pictures of benchmarks/hair_mask.py, which also sets them on one half and reports the other.
 RULES = (
     ("area", 0.03, 9.0, "there is hardly any hair"),
-    ("hat", 0.0, 0.25, "a hat covers the hair"),
+    ("hat", 0.0, 0.5, "a hat covers the hair"),
     ("topped", 0.5, 1.0, "hair does not top the head"),
-    ("agreement", 0.8, 1.0, "two ways to cut the hair disagree"),
-    ("inside", 0.75, 1.0, "what looks like hair is doubtful"),
-    ("outside", 0.0, 0.18, "hair seems to go on beyond its outline"),
+    ("agreement", 0.88, 1.0, "two ways to cut the hair disagree"),
+    ("inside", 0.65, 1.0, "what looks like hair is doubtful"),
+    ("outside", 0.0, 0.22, "hair seems to go on beyond its outline"),
     ("border", 0.0, 0.35, "the picture's border cuts the hair"),
 )
 

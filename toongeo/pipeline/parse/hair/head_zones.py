@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats, Singles
 from toongeo.model.ibug68 import PARTS
 from toongeo.pipeline.parse.lids.lid_patch import lid_unit
 from toongeo.pipeline.parse.masks import Mask, filled, grown
@@ -17,8 +17,6 @@ from toongeo.render import rasterize
 
 __all__ = ["HeadZones", "head_zones"]
 
-Floats = NDArray[np.float64]
-Field = NDArray[np.float32]
 
 _CORE = 0.04  # head sizes inside the jaw line and the brows, where there is face for sure
 _CROWN = 0.3  # faces above the brows: there a head is scalp
@@ -53,8 +51,8 @@ class HeadZones:
     plain: Mask
     brow: Mask
     crown: Mask
-    across: Field
-    up: Field
+    across: Singles
+    up: Singles
     chin: Floats
     head: float
     unit: float

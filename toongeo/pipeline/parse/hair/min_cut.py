@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import breadth_first_order, maximum_flow
 
+from toongeo.arrays import Mask, Singles
+
 __all__ = ["min_cut"]
 
-Field = NDArray[np.float32]
-Mask = NDArray[np.bool_]
 
 _UNITS = 20  # capacities are integers: steps of a twentieth
 # Half of the eight neighbours, and what an edge to them weighs.
 _NEIGHBOURS = (((0, 1), 1.0), ((1, 0), 1.0), ((1, 1), 0.7), ((1, -1), 0.7))
 
 
-def min_cut(odds: Field, lab: Field, smoothness: float, sure: float) -> Mask:
+def min_cut(odds: Singles, lab: Singles, smoothness: float, sure: float) -> Mask:
     """Inside (h, w) bool that minimises the odds it goes against plus the borders it draws (Boykov and Jolly 2001).
 
     Parameters
@@ -74,7 +73,7 @@ def min_cut(odds: Field, lab: Field, smoothness: float, sure: float) -> Mask:
     return result
 
 
-def _edges(lab: Field, smoothness: float):  # type: ignore[no-untyped-def]
+def _edges(lab: Singles, smoothness: float):  # type: ignore[no-untyped-def]
     """Slices of the two ends of all edges in each direction, and their costs."""
     pairs = []
     for (dy, dx), weight in _NEIGHBOURS:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Singles
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.hair.cuts import colour_cut, grab_cut
 from toongeo.pipeline.parse.hair.growth_rules import growth_rules
@@ -22,9 +22,9 @@ from toongeo.pipeline.parse.working_view import WorkingView
 
 __all__ = ["SegmentedHair", "segment_hair"]
 
-Field = NDArray[np.float32]
 
 _BLUR = 1.8  # px: superpixels have jagged borders
+_HATS = 0.35  # odds of hats against hair, in pictures to those in renders
 _HAT = 0.02  # squares of the head's size: smaller hats are none
 _HAT_SHARE = 0.3  # of hair and hat: a smaller hat is hair of another colour
 
@@ -35,7 +35,7 @@ class SegmentedHair:
 
     hair: Mask
     hat: Mask
-    alpha: Field
+    alpha: Singles
     measures: HairMeasures
 
 
@@ -43,23 +43,31 @@ def segment_hair(view: WorkingView, zones: HeadZones, model: HairModel) -> Segme
     """Posterior, two cuts of it, rules of growth, and what the cuts say of each other."""
     lab = cielab(view.pixels)
     patches = superpixels(lab)
-    guess, chances = (p[patches.labels] for p in model(zones, patches))
+    guess, chances = (_sober(p)[patches.labels] for p in model(zones, patches))
     cover = _cover(chances)
     ground = plain_ground(view, zones)
     both = growth_rules(colour_cut(lab, zones, cover, ground), zones, cover)
     other = growth_rules(grab_cut(view, zones, cover, ground), zones, cover)
     hat = _hat(both, chances, zones)
     alpha = hair_alpha(view.pixels, both & ~hat, zones.head)
-    measures = hair_measures(both, other, zones, (cover + _cover(guess)) / 2, (chances[..., 2] + guess[..., 2]) / 2)
+    mean = (guess + chances) / np.float32(2)
+    measures = hair_measures(both, other, zones, _cover(mean), mean[..., 2])
     return SegmentedHair(both & ~hat, hat, alpha, measures)
 
 
-def _cover(chances: Field) -> Field:
+def _sober(chances: Singles) -> Singles:
+    """Probabilities (k, 3) with fewer hats: the renders wear more of them than people do."""
+    _, hair, hat = chances.T
+    share = _HATS * hat / np.maximum(_HATS * hat + hair, 1e-9)
+    return np.stack([chances[:, 0], (hair + hat) * (1 - share), (hair + hat) * share], axis=1).astype(np.float32)
+
+
+def _cover(chances: Singles) -> Singles:
     """How likely each pixel (h, w) is hair or hat."""
     return np.asarray(cv2.GaussianBlur(chances[..., 1] + chances[..., 2], (0, 0), _BLUR), np.float32)
 
 
-def _hat(mask: Mask, chances: Field, zones: HeadZones) -> Mask:
+def _hat(mask: Mask, chances: Singles, zones: HeadZones) -> Mask:
     """The large pieces of the mask that are hat rather than hair."""
     lead = cv2.GaussianBlur(chances[..., 2] - chances[..., 1], (0, 0), 2 * _BLUR)
     _, pieces, stats, _ = cv2.connectedComponentsWithStats((mask & (lead > 0)).astype(np.uint8), connectivity=4)

@@ -12,9 +12,10 @@ from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import dijkstra
 from skimage.segmentation import slic
 
+from toongeo.arrays import Singles
+
 __all__ = ["LIGHTNESS", "Superpixels", "superpixels"]
 
-Field = NDArray[np.float32]
 
 LIGHTNESS = np.array([0.7, 1, 1], np.float32)  # weights of L, a, b in distances: shading changes L above all
 
@@ -39,20 +40,20 @@ class Superpixels:
     """
 
     labels: NDArray[np.intp]
-    lab: Field
+    lab: Singles
 
     @cached_property
-    def area(self) -> Field:
+    def area(self) -> Singles:
         """Pixels (k,) of each."""
         return np.bincount(self.labels.ravel()).astype(np.float32)
 
-    def mean(self, field: NDArray[np.generic]) -> Field:
+    def mean(self, field: NDArray[np.generic]) -> Singles:
         """Mean (k,) over each patch of a field or mask (h, w)."""
         weights = np.asarray(field, np.float64).ravel()
         return (np.bincount(self.labels.ravel(), weights, len(self.area)) / self.area).astype(np.float32)
 
     @cached_property
-    def colours(self) -> Field:
+    def colours(self) -> Singles:
         """Mean colours (k, 3)."""
         return np.stack([self.mean(self.lab[..., c]) for c in range(3)], axis=1)
 
@@ -66,7 +67,7 @@ class Superpixels:
         step = np.linalg.norm((self.colours[i] - self.colours[j]) * LIGHTNESS, axis=1)
         return coo_matrix((np.maximum(step, _LEAST_STEP), (i, j)), (count, count)).tocsr()
 
-    def way(self, seeds: NDArray[np.bool_], power: float = 1) -> Field:
+    def way(self, seeds: NDArray[np.bool_], power: float = 1) -> Singles:
         """Colour steps (k,) along the smoothest way from the nearest of some patches (k,) bool.
 
         They are summed; with a larger power the largest step counts most, as in the p-norm.
@@ -79,7 +80,7 @@ class Superpixels:
         return np.minimum(found ** (1 / power), _FARTHEST).astype(np.float32)
 
 
-def superpixels(lab: Field) -> Superpixels:
+def superpixels(lab: Singles) -> Superpixels:
     """Patches of about 37 px (SLIC, Achanta et al. 2012) of a CIELAB picture (h, w, 3)."""
     smooth = cv2.bilateralFilter(lab, *_SMOOTH)
     labels = slic(
