@@ -126,15 +126,20 @@ def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: He
 
 
 def _over_skin(face: AlignedFace, plane: WorkingPlane, hair: Mask, head: HeadRaster) -> Mask:
-    """Hair before the head; on the far side of a turned head what touches its outline comes from behind, and so does
-    all that is below the brows: there the nose, of which a fit may fall short, stands before it."""
+    """Hair before the head. What only touches the outline of the jaw comes from behind.
+
+    On the far side of a turned head so does all that touches the outline, and all that is below the eyes: there the
+    nose, of which a fit may fall short, stands before it.
+    """
     over = hair & head.head
-    if abs(face.camera.yaw) < _TURNED:
-        return over
-    column, row = plane.cells(plane.of(face.vertices[face.landmark_vertices[[27]]])[:, :2])[0]
-    far = np.sign(face.camera.yaw) * (np.arange(hair.shape[1]) - column) > 0
-    touching = ~opened(over, _TOUCH_MM / 2) & (depth_inside(head.head) < _TOUCH_MM)
-    return over & ~(far & (touching | (np.arange(len(hair)) < row)[:, None]))
+    touching = over & ~opened(over, _TOUCH_MM / 2) & (depth_inside(head.head) < _TOUCH_MM)
+    (column, bridge), (_, tip) = plane.cells(plane.of(face.vertices[face.landmark_vertices[[27, 30]]])[:, :2])
+    rows = np.arange(len(hair))[:, None]
+    behind = touching & (rows < tip)
+    if abs(face.camera.yaw) > _TURNED:
+        far = np.sign(face.camera.yaw) * (np.arange(hair.shape[1]) - column) > 0
+        behind |= far & (touching | (rows < bridge))
+    return over & ~behind
 
 
 def _slivers(gap: Mask, region: Mask) -> Mask:
