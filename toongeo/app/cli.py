@@ -62,6 +62,9 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--author", action="append", metavar="NAME", help="for the licence of a .vrm; may be repeated")
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
     make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
+    hair = make.add_mutually_exclusive_group()
+    hair.add_argument("--hair-mask", type=Path, metavar="FILE", help="picture of IMAGE's size, white where hair is")
+    hair.add_argument("--no-hair", action="store_true", help="build no hair; it stays painted on the head")
     make.add_argument("--scheme", default="auto", metavar="NAME", help=_SCHEME)
     make.set_defaults(run=_make)
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
@@ -137,6 +140,8 @@ def _make(options: argparse.Namespace) -> None:
         crop=options.crop,
         snap=options.snap,
         photometric=options.photometric,
+        hair=not options.no_hair,
+        hair_mask=options.hair_mask,
         format=options.format,
         options=_saving(options),
     )
