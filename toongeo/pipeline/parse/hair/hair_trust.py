@@ -62,7 +62,7 @@ def hair_measures(mask: Mask, other: Mask, zones: HeadZones, posterior: Singles,
     )
 
 
-# Name of the measure, least and largest value that is trusted, and what is said otherwise. Agreement, inside and outside
+# Name of the measure, least and largest value that is trusted, what is said otherwise. Agreement, inside and outside
 # were set on the 25 pictures of benchmarks/hair_mask.py, which also sets them on one half and reports the other.
 RULES = (
     ("area", 0.03, 9.0, "there is hardly any hair"),
