@@ -23,7 +23,7 @@ from toongeo.pipeline.parse.hair.boosted_trees import BoostedTrees
 
 OUT = Path(__file__).parents[2] / "hair.npz"
 SEED = 7
-ROUNDS, DEPTH = 50, 5
+ROUNDS, DEPTH = 60, 5
 PER_PICTURE = 300  # superpixels: so that large pictures do not count more
 
 
@@ -69,7 +69,7 @@ def overlap_of(guess: np.ndarray, case: TrainingRows) -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--pictures", type=int, default=560)
+    parser.add_argument("--pictures", type=int, default=960)
     parser.add_argument("--out", type=Path, default=OUT)
     options = parser.parse_args()
     first, second = trained([rows_of(k) for k in range(options.pictures)])
