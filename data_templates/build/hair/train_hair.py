@@ -3,8 +3,8 @@
 usage: OPENBLAS_NUM_THREADS=1 PYTHONPATH=.:data_templates/build \\
        python data_templates/build/hair/train_hair.py [--pictures N] [--out FILE]
 
-Takes about fifteen minutes on one core and 4 GB. Nothing but the template is looked at: no photograph, no drawing. The
-same machine gives the same bytes. It prints how the trees do on the half of the renders that they were not grown on.
+Takes about ten minutes on one core and 4 GB. No picture of anyone is looked at, only renders of the template. The same
+machine gives the same bytes. It prints how the trees do on the half of the renders that they were not grown on.
 """
 
 from __future__ import annotations
