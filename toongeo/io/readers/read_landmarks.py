@@ -1,5 +1,6 @@
 """Landmark files into pixels."""
 
+import json
 import os
 import zipfile
 from decimal import Context, Decimal, InvalidOperation
@@ -22,8 +23,9 @@ def read_landmarks(path: str | os.PathLike[str], *, one_based: bool | None = Non
     Parameters
     ----------
     path
-        ``.pts`` (iBUG: 1-based), ``.npy`` ((68, 2), 0-based), or ``.csv`` / ``.txt`` with ``x y`` or
-        ``x,y`` in each line (0-based; a heading and lines that start with ``#`` are skipped). ``nan nan``
+        ``.pts`` (iBUG: 1-based), ``.npy`` ((68, 2), 0-based), ``.json`` (a list of 68 ``[x, y]``, null where a
+        point is missing, or an object that holds it as ``"landmarks"``; 0-based), or ``.csv`` / ``.txt`` with
+        ``x y`` or ``x,y`` in each line (0-based; a heading and lines that start with ``#`` are skipped). ``nan nan``
         is a missing point.
     one_based
         Whether 1 must be subtracted; None: as the format has it.
@@ -52,10 +54,13 @@ def read_landmarks(path: str | os.PathLike[str], *, one_based: bool | None = Non
     """
     path = Path(path)
     suffix = path.suffix.lower()
-    if suffix not in (".pts", ".npy", ".csv", ".txt"):
-        raise ValueError(f"path: expected .pts, .npy, .csv or .txt, got {path}")
+    if suffix not in (".pts", ".npy", ".csv", ".txt", ".json"):
+        raise ValueError(f"path: expected .pts, .npy, .csv, .txt or .json, got {path}")
     shift = int(suffix == ".pts" if one_based is None else one_based)
-    points = _read_npy(path) - shift if suffix == ".npy" else _read_lines(path, shift)
+    if suffix in (".npy", ".json"):
+        points = (_read_npy(path) if suffix == ".npy" else _read_json(path)) - shift
+    else:
+        points = _read_lines(path, shift)
     return landmark_array(points, f"landmarks in {path}")
 
 
@@ -68,6 +73,25 @@ def _read_npy(path: Path) -> NDArray[np.float64]:
     if points.dtype.kind not in "iuf":
         raise ValueError(f"path: expected an .npy array of numbers, got {points.dtype} in {path}")
     return points.astype(np.float64)
+
+
+def _read_json(path: Path) -> NDArray[np.float64]:
+    try:
+        entries = json.loads(path.read_text(encoding="utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"path: expected JSON, but {path} is not ({error})") from error
+    entries = entries.get("landmarks") if isinstance(entries, dict) else entries
+    if not isinstance(entries, list):
+        raise ValueError(f'path: expected a list of points or {{"landmarks": [...]}} in {path}')
+    points = np.full((len(entries), 2), np.nan)
+    for k, entry in enumerate(entries):
+        if entry is None:
+            continue
+        numbers = entry if isinstance(entry, list) and len(entry) == 2 else [None]
+        if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers):
+            raise ValueError(f"path: expected [x, y] or null, got {str(entry)[:60]} for point {k} in {path}")
+        points[k] = numbers
+    return points
 
 
 def _read_lines(path: Path, shift: int) -> NDArray[np.float64]:

@@ -1,6 +1,7 @@
 """Landmarks into a file."""
 
 import io
+import json
 import os
 from decimal import Decimal
 from pathlib import Path
@@ -21,8 +22,8 @@ def write_landmarks(path: str | os.PathLike[str], landmarks: ArrayLike) -> None:
     Parameters
     ----------
     path
-        ``.pts`` (1 is added, as iBUG has it), ``.npy``, ``.csv`` (with a heading ``x,y``) or ``.txt``;
-        atomic.
+        ``.pts`` (1 is added, as iBUG has it), ``.npy``, ``.csv`` (with a heading ``x,y``), ``.txt`` or ``.json``
+        (``{"landmarks": [[x, y], ...]}``, null where a point is missing); atomic.
     landmarks
         (68, 2) px, 0-based; NaN rows are missing points.
 
@@ -45,8 +46,11 @@ def write_landmarks(path: str | os.PathLike[str], landmarks: ArrayLike) -> None:
         content = f"x,y\n{_lines(points, ',', 0)}\n".encode()
     elif suffix == ".txt":
         content = f"{_lines(points, ' ', 0)}\n".encode()
+    elif suffix == ".json":
+        rows = [None if np.isnan(row[0]) else row for row in points.tolist()]
+        content = (json.dumps({"scheme": "ibug68", "landmarks": rows}) + "\n").encode()
     else:
-        raise ValueError(f"path: expected .pts, .npy, .csv or .txt, got {path}")
+        raise ValueError(f"path: expected .pts, .npy, .csv, .txt or .json, got {path}")
     atomic_write({path: content})
 
 
