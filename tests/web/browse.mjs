@@ -1,8 +1,8 @@
 // node browse.mjs URL STEPS.json FOLDER: open a page in headless Chromium, do the steps, tell what happened as JSON.
 // A step is one of {shot: file}, {slider: name, value}, {click: selector}, {key: name, on: selector}, {run: script},
-// {download: selector, file}, {wait: script}, {choose: selector, value}, {drag: script, by, shift}, {tap: script, times},
-// {touch: script}, {page: file}, {size: [width, height]}, {axe: context}. Scripts of drags and taps give the place to begin
-// at in CSS pixels, those of touches frames of places of fingers. Printed: results of the runs, console messages, requests.
+// {download: selector, file}, {wait: script}, {choose: selector, value}, {drag: script, by | to, shift}, {tap: script, times},
+// {touch: script}, {page: file}, {size: [width, height]}, {axe: context}. Scripts of drags and taps give places
+// in CSS pixels, those of touches frames of places of fingers. Printed: results of the runs, console messages, requests.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
@@ -13,7 +13,7 @@ const browser = await chromium.launch({
   executablePath: process.env.TOONGEO_CHROMIUM ?? '/usr/bin/chromium',
   args: ['--no-sandbox', '--disable-quic', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', ...quiet],
 });
-const context = await browser.newContext({ viewport: { width: 900, height: 620 }, acceptDownloads: true });
+const context = await browser.newContext({ viewport: { width: 900, height: 620 }, acceptDownloads: true, reducedMotion: 'reduce' });
 const page = await context.newPage();
 const report = { console: [], requests: [], results: [] };
 page.on('console', (message) => report.console.push(`${message.type()}: ${message.text()}`));
@@ -46,11 +46,11 @@ async function act(step) {
     await page.locator(step.choose).selectOption(step.value);
   } else if (step.drag) {
     const [x, y] = await page.evaluate(step.drag);
-    const [dx, dy] = step.by;
+    const [u, v] = step.to ? await page.evaluate(step.to) : [x + step.by[0], y + step.by[1]];
     if (step.shift) await page.keyboard.down('Shift');
     await page.mouse.move(x, y);
     await page.mouse.down();
-    for (let k = 1; k <= 4; k++) await page.mouse.move(x + (k * dx) / 4, y + (k * dy) / 4);
+    await page.mouse.move(u, v, { steps: 4 });
     await page.mouse.up();
     if (step.shift) await page.keyboard.up('Shift');
   } else if (step.tap) {

@@ -94,7 +94,7 @@ def test_others_get_nothing(server, method, path, headers, code):
     ids=["half", "deep", "list", "large"],
 )
 def test_bodies_that_are_none(server, body, code, text):
-    status, headers, answer = answered(server, "POST", "/ask/list", body, **JSON, **bearer(server))
+    status, _, answer = answered(server, "POST", "/ask/list", body, **JSON, **bearer(server))
     assert status == code and answer.startswith(text)
 
 

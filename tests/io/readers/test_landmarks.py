@@ -1,11 +1,13 @@
 """Landmark files: round trips bit for bit, and what is refused."""
 
+import json
+
 import numpy as np
 import pytest
 
 from toongeo.io import read_landmarks, write_landmarks
 
-SUFFIXES = [".pts", ".npy", ".csv", ".txt"]
+SUFFIXES = [".pts", ".npy", ".csv", ".txt", ".json"]
 
 
 @pytest.fixture
@@ -43,6 +45,16 @@ def test_pts_is_one_based_as_ibug_has_it(tmp_path):
     np.testing.assert_array_equal(read_landmarks(path), np.tile([0.1, 1.5], (68, 1)))
     write_landmarks(path, np.tile([0.1, 1.5], (68, 1)))
     assert path.read_text().splitlines()[3] == "1.1 2.5"
+
+
+def test_json_is_plain(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text("\ufeff" + json.dumps([[1, 2.5]] * 67 + [None]), encoding="utf-8")
+    points = read_landmarks(path)
+    np.testing.assert_array_equal(points[:67], np.tile([1, 2.5], (67, 1)))
+    write_landmarks(path, points)
+    assert json.loads(path.read_text()) == {"scheme": "ibug68", "landmarks": [[1.0, 2.5]] * 67 + [None]}
+    np.testing.assert_array_equal(read_landmarks(path), points)
 
 
 @pytest.mark.parametrize(
@@ -121,7 +133,15 @@ def test_wrong_arrays(tmp_path, array, message):
         ("a.csv", b"\xff\xfe\x00\x01", "expected text"),
         ("a.npy", b"", "expected an .npy array"),
         ("a.npy", b"1 2\n" * 68, "expected an .npy array"),
-        ("a.dat", b"1 2\n" * 68, "expected .pts, .npy, .csv or .txt"),
+        ("a.dat", b"1 2\n" * 68, "expected .pts, .npy, .csv, .txt or .json"),
+        ("a.json", b"[1, 2", "expected JSON, but"),
+        ("a.json", b"[" * 9000, "expected JSON, but"),
+        ("a.json", b'{"points": []}', r'a list of points or {"landmarks": '),
+        ("a.json", b"[[1, 2], [1, true]]", r"expected \[x, y\] or null, got \[1, True\] for point 1"),
+        ("a.json", b"[[1, 2], [1]]", "for point 1"),
+        ("a.json", b"[[1, 1" + b"0" * 400 + b"]]", "for point 0"),
+        ("a.json", b"[[1, 2]]", "expected 68 points in iBUG order, got 1"),
+        ("a.json", b"\xff", "expected JSON, but"),
     ],
 )
 def test_wrong_files(tmp_path, name, content, message):
@@ -139,8 +159,8 @@ def test_pickle_is_refused(tmp_path):
 
 
 def test_unknown_suffix_and_places(tmp_path, landmarks):
-    with pytest.raises(ValueError, match="expected .pts, .npy, .csv or .txt, got .*a.json"):
-        write_landmarks(tmp_path / "a.json", landmarks)
+    with pytest.raises(ValueError, match="expected .pts, .npy, .csv, .txt or .json, got .*a.xml"):
+        write_landmarks(tmp_path / "a.xml", landmarks)
     with pytest.raises(FileNotFoundError, match="none.pts"):
         read_landmarks(tmp_path / "none.pts")
     with pytest.raises(OSError, match="cannot write .*nowhere/a.pts"):

@@ -1,5 +1,6 @@
 """Landmark files into pixels."""
 
+import contextlib
 import json
 import os
 import zipfile
@@ -83,15 +84,16 @@ def _read_json(path: Path) -> NDArray[np.float64]:
     entries = entries.get("landmarks") if isinstance(entries, dict) else entries
     if not isinstance(entries, list):
         raise ValueError(f'path: expected a list of points or {{"landmarks": [...]}} in {path}')
-    points = np.full((len(entries), 2), np.nan)
-    for k, entry in enumerate(entries):
-        if entry is None:
-            continue
-        numbers = entry if isinstance(entry, list) and len(entry) == 2 else [None]
-        if not all(isinstance(number, int | float) and not isinstance(number, bool) for number in numbers):
-            raise ValueError(f"path: expected [x, y] or null, got {str(entry)[:60]} for point {k} in {path}")
-        points[k] = numbers
-    return points
+    return np.array([_entry(path, k, entry) for k, entry in enumerate(entries)], np.float64).reshape(-1, 2)
+
+
+def _entry(path: Path, k: int, entry: object) -> tuple[float, float]:
+    if entry is None:
+        return np.nan, np.nan
+    if isinstance(entry, list) and len(entry) == 2 and {type(number) for number in entry} <= {int, float}:
+        with contextlib.suppress(OverflowError):
+            return float(entry[0]), float(entry[1])
+    raise ValueError(f"path: expected [x, y] or null, got {str(entry)[:60]} for point {k} in {path}")
 
 
 def _read_lines(path: Path, shift: int) -> NDArray[np.float64]:

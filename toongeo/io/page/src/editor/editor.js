@@ -325,9 +325,10 @@ export class Editor {
       points: () => this.state.points,
       missing: () => this.state.missing,
       confidence: () => this.state.confidence,
-      screen: (k) => {
+      screen: (k) => this.scripted().pixel(this.state.points[k]),
+      pixel: (place) => {
         const box = this.parts.surface.getBoundingClientRect();
-        const [x, y] = this.view.toScreen(this.state.points[k]);
+        const [x, y] = this.view.toScreen(place);
         return [box.left + x, box.top + y];
       },
       scale: () => this.view.scale,

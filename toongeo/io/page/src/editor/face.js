@@ -52,10 +52,10 @@ export class Face {
     if (!this.isShown) this.frame(landmarks);
     const place = this.attribute('position', vertices.length, 3);
     const uv = this.attribute('uv', (2 * vertices.length) / 3, 2);
-    const { scale, middle } = this;
+    const { scale, centre } = this;
     for (let i = 0; i < uv.length / 2; i++) {
       const [x, y, z] = vertices.subarray(3 * i, 3 * i + 3);
-      place.set([scale * (x - middle[0]), scale * (middle[1] - y), scale * z], 3 * i);
+      place.set([scale * (x - centre[0]), scale * (centre[1] - y), scale * z], 3 * i);
       uv[2 * i] = (x + 0.5) / this.size[0];
       uv[2 * i + 1] = (y + 0.5) / this.size[1];
     }
@@ -69,7 +69,7 @@ export class Face {
   frame(landmarks) {
     const low = [0, 1].map((axis) => Math.min(...landmarks.map((point) => point[axis])));
     const high = [0, 1].map((axis) => Math.max(...landmarks.map((point) => point[axis])));
-    this.middle = [0, 1].map((axis) => (low[axis] + high[axis]) / 2);
+    this.centre = [0, 1].map((axis) => (low[axis] + high[axis]) / 2);
     this.scale = TALL / Math.max(high[1] - low[1], 1);
     const wide = (this.scale * (high[0] - low[0])) / 2;
     this.bounds = new Box3(new Vector3(-wide, (-0.5 - CHIN) * TALL, -2 * wide), new Vector3(wide, (0.5 + FOREHEAD) * TALL, 0));

@@ -22,7 +22,7 @@ export class Panel {
   fill() {
     const options = [];
     for (const [part, points] of Object.entries(this.settings.parts)) {
-      const group = make('li', { role: 'group', 'aria-label': inWords(part) });
+      const group = make('div', { role: 'group', 'aria-label': inWords(part) });
       group.append(make('span', { class: 'part', 'aria-hidden': 'true' }, inWords(part)));
       for (const k of points) {
         const option = make('div', { role: 'option', 'aria-selected': 'false', id: `${this.parts.points.id}-${k}` });

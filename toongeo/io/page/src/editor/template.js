@@ -79,7 +79,7 @@ export const TEMPLATE = `
   <section aria-label="Points">
     <h2>Points</h2>
     <p class="legend"><span class="placed">placed</span><span class="sure">sure</span><span class="rather">fairly sure</span><span class="unsure">unsure</span><span class="missing">missing</span></p>
-    <ul class="points" data-id="points" role="listbox" aria-multiselectable="true" aria-label="Landmarks" tabindex="0"></ul>
+    <div class="points" data-id="points" role="listbox" aria-multiselectable="true" aria-label="Landmarks" tabindex="0"></div>
   </section>
 </aside>
 <p class="status" data-id="status" role="status" aria-live="polite"></p>
