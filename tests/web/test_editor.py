@@ -180,9 +180,9 @@ def test_a_folder_and_files_that_are_there(tmp_path, browse):
         ]
         report, _ = browse(server.url, steps)
     assert results(report) == [
-        ["damaged.png", "1 of 3 · 1 done · no points yet"],
-        ["z.png", "3 of 3 · 2 done · saved"],
-        ["face.png", "2 of 3 · 2 done · saved"],
+        ["damaged.png", "1/3 · 1 done · no points yet"],
+        ["z.png", "3/3 · 2 done · saved"],
+        ["face.png", "2/3 · 2 done · saved"],
     ]
     saved = read_landmarks(tmp_path / "z.pts")
     assert saved[8, 1] > TRUTH[8, 1] + 5

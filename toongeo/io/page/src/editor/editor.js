@@ -34,7 +34,7 @@ export class Editor {
     this.near = null;
     this.isPanning = false;
     this.on = Object.fromEntries(TOGGLES.map((name) => [name, false]));
-    this.view = new View(this.parts.surface, () => this.draw());
+    this.view = new View(this.parts.surface, () => this.covered(), () => this.draw());
     this.overlay = new Overlay(this.parts.overlay, settings);
     this.refit = new Refit(this.parts, backend, () => this.draw());
     this.files = new Files(this, this.parts, backend);
@@ -82,6 +82,12 @@ export class Editor {
     return this.shownState ?? this.history.state;
   }
 
+  // What the tools, or the question for a click in their place, cover of the picture.
+  covered() {
+    const { surface, bar, ask } = this.parts;
+    return surface.clientHeight - (ask.hidden ? bar : ask).offsetTop;
+  }
+
   get isPlacing() {
     return this.placing.isOn;
   }
@@ -118,7 +124,7 @@ export class Editor {
 
   preview(next) {
     this.shownState = next;
-    this.changed(next === null);
+    this.changed(next === null || this.isPlacing);
   }
 
   commit(kind = null) {

@@ -47,9 +47,10 @@ export class Face {
     this.stage.draw();
   }
 
-  // Vertices in px: x right, y down, z towards the viewer.
-  show(vertices, landmarks) {
-    if (!this.isShown) this.frame(landmarks);
+  // Vertices in px: x right, y down, z towards the viewer. While points move (not final), what moves is seen to move; then
+  // the face takes its place in the middle.
+  show(vertices, landmarks, isFinal) {
+    if (!this.isShown || isFinal) this.frame(landmarks);
     const place = this.attribute('position', vertices.length, 3);
     const uv = this.attribute('uv', (2 * vertices.length) / 3, 2);
     const { scale, centre } = this;

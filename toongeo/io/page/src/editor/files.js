@@ -78,9 +78,10 @@ export class Files {
     const { parts, list, editor } = this;
     if (!list.length) return;
     const done = list.filter((picture) => picture.done).length;
-    const several = list.length > 1 ? `${this.current + 1} of ${list.length} · ${done} done · ` : '';
+    const several = list.length > 1 ? [make('span', {}, `${this.current + 1}/${list.length} · `), make('span', { class: 'wide' }, `${done} done · `)] : [];
     parts.name.textContent = list[this.current].name;
-    parts.count.textContent = several + (editor.history.isSaved ? (list[this.current].done ? 'saved' : 'no points yet') : 'not saved');
+    const state = editor.history.isSaved ? (list[this.current].done ? 'saved' : 'no points yet') : 'not saved';
+    parts.count.replaceChildren(...several, state);
     parts.count.classList.toggle('unsaved', !editor.history.isSaved);
     parts.previous.hidden = parts.next.hidden = list.length < 2;
     parts.previous.disabled = this.current === 0;

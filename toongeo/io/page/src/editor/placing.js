@@ -37,10 +37,17 @@ export class Placing {
     this.clicks = this.before.points.map(() => null);
     this.at = 0;
     this.trail = [];
-    this.parts.ask.hidden = false;
+    this.ask(true);
     this.editor.select([], false);
     this.show();
     this.editor.preview(this.given());
+  }
+
+  // The question takes the place of the tools.
+  ask(isOn) {
+    this.parts.ask.hidden = !isOn;
+    this.parts.bar.hidden = isOn;
+    this.editor.view.resized();
   }
 
   get count() {
@@ -58,7 +65,7 @@ export class Placing {
     const [x, y] = this.settings.face[point];
     this.parts.what.textContent = `Click the ${what}`;
     const more = this.settings.fewestClicks - this.count;
-    this.parts.progress.textContent = `${this.at + 1} of ${this.settings.clicks.length}${more > 0 ? '' : ' · six or more are good; Done at any time'}`;
+    this.parts.progress.textContent = `${this.at + 1} of ${this.settings.clicks.length}${more > 0 ? '' : ' · six are good, twelve better'}`;
     this.parts.done.disabled = more > 0;
     this.mark.setAttribute('cx', x);
     this.mark.setAttribute('cy', y);
@@ -104,7 +111,7 @@ export class Placing {
   end(keep) {
     if (!this.isOn) return;
     this.isOn = false;
-    this.parts.ask.hidden = true;
+    this.ask(false);
     if (keep && this.count >= this.settings.fewestClicks) this.editor.commit();
     else this.editor.preview(null);
     this.editor.say(keep ? 'Placed. Drag what is off.' : 'Points are as before');

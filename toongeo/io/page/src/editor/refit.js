@@ -37,7 +37,7 @@ export class Refit {
       const answer = await this.backend.ask('fit', { picture, points: known(state), final });
       this.landmarks = answer.landmarks;
       this.count += 1;
-      this.face?.show(unpacked(answer.vertices, Float32Array), answer.landmarks);
+      this.face?.show(unpacked(answer.vertices, Float32Array), answer.landmarks, final);
       const off = answer.error === null ? '' : `Off by ${answer.error.toFixed(1)} % of the width across the eyes. `;
       this.parts.fitline.textContent = off + answer.warnings.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`).join(' ');
       this.parts.fitline.classList.toggle('wrong', answer.warnings.length > 0);

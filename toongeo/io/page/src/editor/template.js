@@ -36,7 +36,7 @@ export const TEMPLATE = `
     <div><p class="what" data-id="what" role="status"></p><p class="quiet" data-id="progress"></p>
     <div class="row"><button type="button" data-id="skip">Skip</button><button type="button" data-id="cancel">Cancel</button><button type="button" class="main" data-id="done">Done</button></div></div>
   </div>
-  <div class="bar" role="toolbar" aria-label="Tools">
+  <div class="bar" data-id="bar" role="toolbar" aria-label="Tools">
     <button type="button" data-id="box" aria-pressed="false" title="Drag a box around points (or Shift and drag)">Box</button>
     <button type="button" data-id="soft" aria-pressed="false" title="Neighbours follow (S)">Soft</button>
     <button type="button" data-id="both" aria-pressed="false" title="The other side moves alike (B)">Both sides</button>

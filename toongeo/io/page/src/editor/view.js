@@ -1,11 +1,12 @@
 // Which part of the picture is seen: CSS pixels are `scale * (px + 0.5) + shift`, since an integer is a pixel's centre.
 const MOST_SCALE = 40;
 const MARGIN = 0.04;
-const BAR = 66; // CSS px at the bottom, where the tools lie
 
 export class View {
-  constructor(box, redraw) {
+  // `covered`: how many CSS px at the bottom of the box other things lie on.
+  constructor(box, covered, redraw) {
     this.box = box;
+    this.covered = covered;
     this.redraw = redraw;
     this.scale = 1;
     this.shift = [0, 0];
@@ -24,7 +25,7 @@ export class View {
 
   get free() {
     const [width, height] = this.seen;
-    return [width, Math.max(height - BAR, 1)];
+    return [width, Math.max(height - this.covered(), 1)];
   }
 
   fit() {
