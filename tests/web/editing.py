@@ -9,8 +9,8 @@ from toongeo.io import read_landmarks
 
 NAME = "moustache_man"
 TRUTH = read_landmarks(PORTRAITS / f"{NAME}.pts")
-LOADED = {"wait": "document.documentElement.dataset.ready === 'true'"}
-READY = {"wait": "document.documentElement.dataset.ready === 'true' && toongeo.fits() > 0"}
+LOADED = {"wait": "document.querySelector('[data-ready]')"}
+READY = {"wait": "document.querySelector('[data-ready]') && toongeo.fits() > 0"}
 POINTS = {"run": "toongeo.points()"}
 SELECTED = {"run": "toongeo.selection()"}
 SCALE = {"run": "toongeo.scale()"}

@@ -91,7 +91,7 @@ class EditorSession:
             points, answer["note"] = None, str(error)
         if points is not None:
             missing = np.isnan(points[:, 0])
-            points = _completed(points, img)
+            points = _completed(points, img) if missing.any() else points
             return answer | {"source": "file", "points": points.tolist(), "missing": missing.tolist()}
         found = self._found(img)
         if found is None:

