@@ -41,10 +41,8 @@ def main() -> None:
             print(
                 f"| {folder.parent.name}/{folder.name} | {count} | " + " | ".join(map(middle_and_worst, columns)) + " |"
             )
-    print("\n| a fit of the editor, with its answer as JSON | median CPU ms | longest |\n|---|---|---|")
-    for name, final in (("while points move", False), ("when they rest, as `make` does", True)):
-        times = [ms for k in range(len(PictureList(PORTRAITS))) for ms in answers(k, final)]
-        print(f"| {name} | {np.median(times):.1f} | {max(times):.1f} |")
+    times = [ms for k in range(len(PictureList(PORTRAITS))) for ms in answers(k)]
+    print(f"\nA fit with its answer as JSON: median {np.median(times):.1f} CPU ms, longest {max(times):.1f}")
 
 
 def left(way: Callable[[np.ndarray], np.ndarray], points: np.ndarray, count: int) -> float:
@@ -70,7 +68,7 @@ def middle_and_worst(errors: list[float]) -> str:
     return f"{np.median(errors):.1f} ({max(errors):.1f})"
 
 
-def answers(picture: int, final: bool) -> list[float]:
+def answers(picture: int) -> list[float]:
     """CPU milliseconds of the answers while the tip of the nose goes a pixel a time."""
     session = EditorSession(PictureList(PORTRAITS))
     points = session.answer("open", {"picture": picture})["points"]
@@ -79,7 +77,7 @@ def answers(picture: int, final: bool) -> list[float]:
     for _ in range(NUDGES):
         points[30][0] += 1
         started = time.process_time()
-        json.dumps(session.answer("fit", {"picture": picture, "points": points, "final": final}))
+        json.dumps(session.answer("fit", {"picture": picture, "points": points}))
         times.append(1000 * (time.process_time() - started))
     return times
 

@@ -10,13 +10,13 @@ import cv2
 import numpy as np
 
 from toongeo.app.editor.face_mesh import face_mesh, seen_vertices
-from toongeo.app.editor.live_fit import LiveFit
 from toongeo.app.editor.place_landmarks import place_landmarks
 from toongeo.app.editor.protocols import Detector, Pictures
 from toongeo.app.editor.read_points import read_points
 from toongeo.arrays import Bytes, Floats
 from toongeo.io import encode_image
 from toongeo.model.ibug68 import OUTER_EYES
+from toongeo.pipeline.fit import fit_3dmm
 
 __all__ = ["EditorSession"]
 
@@ -36,7 +36,6 @@ class EditorSession:
 
     def __init__(self, pictures: Pictures, detector: Detector | None = None) -> None:
         self.pictures, self.detector = pictures, detector
-        self._fit = LiveFit()
         self._lock = threading.Lock()
         self._held: tuple[int, Bytes] | None = None
         self._answers = {
@@ -118,7 +117,7 @@ class EditorSession:
     def _refit(self, message: dict[str, Any]) -> dict[str, Any]:
         points = read_points(message.get("points"))
         img = self._picture(self._number(message))
-        fit = self._fit.fit(img, points, final=message.get("final") is not False)
+        fit = fit_3dmm(img, points)
         return {
             "vertices": _packed(seen_vertices(fit).astype("<f4")),
             "landmarks": fit.project(fit.vertices[fit.landmark_vertices]).tolist(),

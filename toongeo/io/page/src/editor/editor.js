@@ -144,7 +144,7 @@ export class Editor {
     this.parts.redo.disabled = this.history.at === this.history.steps.length - 1;
     this.files.tell();
     this.panel.show(this.state, this.selection);
-    this.refit.run({ picture: this.files.current, state: this.state, final: isFinal });
+    this.refit.run({ picture: this.files.current, state: this.state, isFinal });
     this.draw();
   }
 

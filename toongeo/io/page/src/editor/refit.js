@@ -31,13 +31,13 @@ export class Refit {
     this.face?.wearable(bitmap, width, height);
   }
 
-  async fit({ picture, state, final }) {
+  async fit({ picture, state, isFinal }) {
     if (!this.isLoaded || known(state).filter(Boolean).length < FEWEST) return;
     try {
-      const answer = await this.backend.ask('fit', { picture, points: known(state), final });
+      const answer = await this.backend.ask('fit', { picture, points: known(state) });
       this.landmarks = answer.landmarks;
       this.count += 1;
-      this.face?.show(unpacked(answer.vertices, Float32Array), answer.landmarks, final);
+      this.face?.show(unpacked(answer.vertices, Float32Array), answer.landmarks, isFinal);
       const off = answer.error === null ? '' : `Off by ${answer.error.toFixed(1)} % of the width across the eyes. `;
       this.parts.fitline.textContent = off + answer.warnings.map((text) => `${text[0].toUpperCase()}${text.slice(1)}.`).join(' ');
       this.parts.fitline.classList.toggle('wrong', answer.warnings.length > 0);
