@@ -16,10 +16,10 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 import sys
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import igl
 import numpy as np
+from pictures import FOLDER, Picture, pictures, roles
 
 from toongeo import LaplacianAligner, align_face, default_model, fit_3dmm, laplacian_align, read_landmarks
 from toongeo.geometry.rotations.similarity import similarity
@@ -28,7 +28,6 @@ from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.render import ScaledOrthographicCamera
 
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 PLAIN = {"flow": False, "slide": False}
 PHASES = 3
 # Landmarks about whose centre a part grows, how far behind them the centre lies (mm), its radius (mm), its growth.
@@ -64,20 +63,20 @@ def held_out(landmarks: np.ndarray) -> np.ndarray:
     return total / PHASES
 
 
-def pictures(folders: list[Path]) -> None:
+def picture_rows(found: list[Picture]) -> None:
     print("| picture | anchors, max % | self-intersecting: coarse % | plain % | aligned % ", end="")
     print("| held out: coarse % | plain % | aligned % |")
     print("|---|---|---|---|---|---|---|---|")
     rows = []
-    for folder in folders:
-        for points in sorted([*folder.glob("*.pts"), *folder.glob("[0-9]*.txt")]):
-            landmarks = read_landmarks(points)
-            fit = fit_3dmm(None, landmarks)
-            face = align_face(fit, landmarks)
-            crossings = [crossing(found) for found in (fit, align_face(fit, landmarks, **PLAIN), face)]
-            rows.append([errors(face, landmarks).max(), *crossings, *held_out(landmarks)])
-            print(f"| {points.stem} | {row(rows[-1])} |", flush=True)
-    print(f"| mean of {len(rows)} | {row(np.mean(rows, 0))} |\n")
+    for picture in found:
+        landmarks = read_landmarks(picture.landmarks)
+        fit = fit_3dmm(None, landmarks)
+        face = align_face(fit, landmarks)
+        crossings = [crossing(shape) for shape in (fit, align_face(fit, landmarks, **PLAIN), face)]
+        rows.append([errors(face, landmarks).max(), *crossings, *held_out(landmarks)])
+        print(f"| {picture.name} | {row(rows[-1])} |", flush=True)
+    print(f"| mean of {len(rows)} | {row(np.mean(rows, 0))} |")
+    print(roles("alignment", [picture.name for picture in found]), "\n")
 
 
 def row(values) -> str:
@@ -131,7 +130,7 @@ def best(run: Callable[[], object], times: int) -> float:
 
 
 def times() -> None:
-    landmarks = read_landmarks(PORTRAITS / "blue_girl.pts")
+    landmarks = read_landmarks(FOLDER / "blue_girl.pts")
     fit = fit_3dmm(None, landmarks)
     # Without teeth and tongue: ARAP wants an anchor in every component.
     loose = np.any([fit.region(name) for name in ("teeth_upper", "teeth_lower", "tongue")], axis=0)
@@ -161,7 +160,7 @@ def times() -> None:
 
 
 def main() -> None:
-    pictures([Path(name) for name in sys.argv[1:]] or [PORTRAITS])
+    picture_rows(pictures(sys.argv[1:]))
     known_depth()
     times()
 

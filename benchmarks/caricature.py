@@ -17,10 +17,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from pictures import pictures, roles
 from scipy.optimize import least_squares
 
 from toongeo import align_face, default_model, fit_3dmm, read_landmarks
-from toongeo.app.bench.bench_folder import bench_folder
 from toongeo.caricature import CaricatureOptions, DeformationSpace, face_space, fit_caricature
 from toongeo.caricature.space.face_space import _face_space
 from toongeo.caricature.space.fit_weights import WeightProblem
@@ -79,12 +79,13 @@ def rival() -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    landmarks = [read_landmarks(picture.landmarks) for picture in bench_folder(parser.parse_args().folder)]
+    found = pictures([parser.parse_args().folder])
+    landmarks = [read_landmarks(picture.landmarks) for picture in found]
     space = face_space().space
     model = default_model()
     print(f"space of 98 shapes: {seconds(lambda: _face_space.__wrapped__(model)):.2f} s")
-    found = fit_caricature(None, landmarks[0])
-    P, options = found.vertices[found.space.vertices], CaricatureOptions()
+    first = fit_caricature(None, landmarks[0])
+    P, options = first.vertices[first.space.vertices], CaricatureOptions()
     used = seconds(lambda: space.fit(P, ridge=options.ridge, iterations=options.steps))
     steps = len(space.fit(P, ridge=options.ridge).energies) - 1
     whole = seconds(lambda: space.fit(P, ridge=options.ridge))
@@ -101,6 +102,7 @@ def main() -> None:
         warm = seconds(lambda: fit_caricature(None, opened, start=face, iterations=1, options=quick))  # noqa: B023
         rows.append([aligned, cold, warm])
     print("align_face {:.2f} s, whole fit {:.2f} s, warm start {:.2f} s (medians)".format(*np.median(rows, axis=0)))
+    print(roles("caricature", [picture.name for picture in found]), "\n")
     print(f"largest memory before the rival: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
     rival()
     print(f"largest memory: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")

@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
+from pictures import roles
 from scipy.interpolate import RBFInterpolator
 
 from toongeo import ScaledOrthographicCamera, align_face, default_model, fit_3dmm, read_landmarks, render_mesh
@@ -236,6 +237,7 @@ def picture_table(files: list[Path], sheets: Path | None) -> None:
     for name, values in rows.items():
         cosines, blink, outside, _ = np.mean(values, axis=0)
         print(f"| {name} | {cosines:.3f} | {100 * cosines / base:.0f} % | {blink:.2f} | {outside:.1f} |")
+    print(roles("caricature_expressions", [path.stem for path in files]))
     print(f"\nshape stage: {np.median([row[3] for row in rows['caricature_rig']]):.1f} s (median)")
 
 

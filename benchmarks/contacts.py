@@ -19,9 +19,9 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
+from pictures import Picture, pictures, roles
 
 from toongeo import align_face, build_rig, fit_3dmm, fit_lids, fit_mouth, neutral_face, read_image, read_landmarks
 from toongeo.metrics import mesh_quality
@@ -31,7 +31,6 @@ from toongeo.model.anatomy.rims import opening_rim, rim_path
 from toongeo.pipeline import AlignedFace, Eyes, Rig
 from toongeo.pipeline.rig.eyes.visible_eyeballs import visible_eyeballs
 
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
 AROUND_EYES = ("brow", "cheekSquint", "eye", "mouthSmile", "noseSneer")
 
@@ -74,10 +73,9 @@ def crossing(face: AlignedFace, rig: Rig, drawn: np.ndarray) -> tuple[int, int, 
     return gained, *worst
 
 
-def row(picture: Path) -> list[object]:
-    points = next(p for p in (picture.with_suffix(".pts"), picture.with_suffix(".txt")) if p.exists())
-    landmarks = read_landmarks(points)
-    face = align_face(fit_3dmm(read_image(picture), landmarks), landmarks)
+def row(picture: Picture) -> list[object]:
+    landmarks = read_landmarks(picture.landmarks)
+    face = align_face(fit_3dmm(read_image(picture.image), landmarks), landmarks)
     times = [time.process_time()]
     face = neutral_face(face)
     rig = build_rig(face)
@@ -92,26 +90,26 @@ def row(picture: Path) -> list[object]:
     lids = np.any([face.region(f"eyelid_{lid}_{name}") for lid in ("upper", "lower") for name in SIDES], axis=0)
     within = sum(inside((rig.neutral + shape)[skin], eyes) for shape in (0, *rig.deltas, *rig.gaze))
     half = sum(inside(rig.vertices(dict.fromkeys(BLINK, w))[lids], eyes) for w in (0.25, 0.5, 0.75))
-    closed = min(rig.report["closure_left"], rig.report["closure_right"])
+    closed = min(rig.report.closure_left, rig.report.closure_right)
     gained, excess, name = crossing(face, rig, drawn)
     seconds = np.diff(times)
     return [np.max(shown), gap.mean(), gap.max(), within, half, gained, excess, closed, *seconds[::-1], name]
 
 
 def main() -> None:
-    folders = [Path(arg) for arg in sys.argv[1:]] or [PORTRAITS]
+    found = pictures(sys.argv[1:])
     print(
         f"{'':<26} shows   gap mean  max  inside half neutral crossing closed   lids    mouth  transfer"
         "  worst expression"
     )
-    for folder in folders:
-        for picture in sorted(p for kind in ("png", "jpg") for p in folder.glob(f"*.{kind}")):
-            shown, mean, most, within, half, gained, excess, closed, *seconds, name = row(picture)
-            print(
-                f"{picture.stem:<26} {shown:5.2f}   {mean:8.1f} {most:4.1f}  {within:6d} {half:4d} {gained:+7d}"
-                f" {excess:8d} {closed:6.1f}  {seconds[0]:5.2f} s {seconds[1]:5.2f} s {seconds[2]:6.2f} s  {name}",
-                flush=True,
-            )
+    for picture in found:
+        shown, mean, most, within, half, gained, excess, closed, *seconds, name = row(picture)
+        print(
+            f"{picture.name:<26} {shown:5.2f}   {mean:8.1f} {most:4.1f}  {within:6d} {half:4d} {gained:+7d}"
+            f" {excess:8d} {closed:6.1f}  {seconds[0]:5.2f} s {seconds[1]:5.2f} s {seconds[2]:6.2f} s  {name}",
+            flush=True,
+        )
+    print(roles("contacts", [picture.name for picture in found]))
 
 
 if __name__ == "__main__":

@@ -23,6 +23,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
+from pictures import FOLDER, pictures, roles
 from scipy.optimize import least_squares
 
 from tests.driving.conftest import film, moves_landmarks, rms, smooth_weights
@@ -32,7 +33,6 @@ from toongeo.driving.landmark_pose import _jacobian, landmark_pose
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
 
 ROOT = Path(__file__).parents[1]
-PORTRAITS = ROOT / "examples" / "portraits"
 RIVAL_FRAMES = 5
 
 
@@ -40,14 +40,12 @@ def main() -> None:
     if sys.argv[1:] == ["--page"]:
         page()
         return
-    folders = [Path(argument) for argument in sys.argv[1:]] or [PORTRAITS]
+    found = pictures(sys.argv[1:])
     print("| head | known | neutral frame | 1/3 px noise | still, 1 px: s.d. | ms a frame | scipy ms | ratio |")
     print("|---|---|---|---|---|---|---|---|")
-    for folder in folders:
-        for points in sorted([*folder.glob("*.pts"), *folder.glob("[0-9]*.txt")]):
-            images = [points.with_suffix(suffix) for suffix in (".png", ".jpg")]
-            image = next(path for path in images if path.is_file())
-            print(row(points.stem, read_image(image), read_landmarks(points)), flush=True)
+    for picture in found:
+        print(row(picture.name, read_image(picture.image), read_landmarks(picture.landmarks)), flush=True)
+    print(roles("driving", [picture.name for picture in found]))
 
 
 def row(name: str, img: np.ndarray, landmarks: np.ndarray) -> str:
@@ -107,7 +105,7 @@ def page() -> None:
     """1,000 messages to a page in headless Chromium, of a few weights and of all."""
     from tests.app.running import running
 
-    avatar = make_avatar(read_image(PORTRAITS / "blue_girl.png"), read_landmarks(PORTRAITS / "blue_girl.pts"))
+    avatar = make_avatar(read_image(FOLDER / "blue_girl.png"), read_landmarks(FOLDER / "blue_girl.pts"))
     with tempfile.TemporaryDirectory() as folder:
         glb, steps = Path(folder) / "face.glb", Path(folder) / "steps.json"
         avatar.save(glb, loadable=False, quantize=True, animation=None)

@@ -1,8 +1,8 @@
 """Editing the expression of pictures: what is kept, what it costs, and how textures compare with known ones.
 
-usage: python benchmarks/editing.py [picture.png ...]
+usage: python benchmarks/editing.py [FOLDER ...]
 
-Landmarks lie beside each picture (.pts or .txt); without pictures the seven examples are used. For each: mean
+Landmarks lie beside each picture (.pts or .txt); without a folder the seven examples are used. For each: mean
 difference, of 255 inside the face, between the picture and its own expression rendered; the same after editing to
 another expression, fitting the edited picture anew, and editing back; the largest difference outside the region that
 may be touched; CPU time of a frame with the picture at 512 px, and of its texture at 512 x 512.
@@ -15,10 +15,10 @@ chosen to suit the palette of the face, and cannot be those of the template.
 
 import sys
 import time
-from pathlib import Path
 
 import cv2
 import numpy as np
+from pictures import Picture, pictures, roles
 
 from toongeo import (
     ClassicalTextureGenerator,
@@ -36,7 +36,6 @@ from toongeo.geometry import vertex_normals
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_lids
 from toongeo.render import ScaledOrthographicCamera, irradiance, linear_to_srgb, srgb_to_linear, studio_light
 
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 SIDE = 512  # px and texels
 THERE = {"mouthSmileLeft": 0.7, "mouthSmileRight": 0.7, "jawOpen": 0.2, "browInnerUpLeft": 0.5, "browInnerUpRight": 0.5}
 TARGETS: dict[str, dict[str, float]] = {
@@ -48,10 +47,11 @@ TARGETS: dict[str, dict[str, float]] = {
 }
 
 
-def main(paths: list[Path]) -> None:
+def main(found: list[Picture]) -> None:
     print("picture              own   there and back  outside  frame ms  texture ms")
-    for path in paths:
-        print(f"{path.stem:18s}", *_picture_row(path))
+    for picture in found:
+        print(f"{picture.name:18s}", *_picture_row(picture), flush=True)
+    print(roles("editing", [picture.name for picture in found]))
     print(
         "\nexpression  attention, Eq. 13  colour, Eq. 14  no attention  source as it is  mouth: colour  source as it is"
     )
@@ -59,8 +59,8 @@ def main(paths: list[Path]) -> None:
         print(*row)
 
 
-def _picture_row(path: Path) -> list[str]:
-    img, landmarks = _resized(path)
+def _picture_row(picture: Picture) -> list[str]:
+    img, landmarks = _resized(picture)
     editor = ExpressionEditor(img, landmarks)
     face = _face_pixels(landmarks, img.shape)
     own = np.abs(editor.frame(editor.pose).astype(int) - img)
@@ -78,10 +78,9 @@ def _picture_row(path: Path) -> list[str]:
     return [f"{differences[0]:6.2f}", f"{differences[1]:15.2f}", f"{outside:8d}", f"{frame:9.0f}", f"{texture:11.0f}"]
 
 
-def _resized(path: Path) -> tuple[np.ndarray, np.ndarray]:
+def _resized(picture: Picture) -> tuple[np.ndarray, np.ndarray]:
     """Picture with its longer side at 512 px."""
-    beside = path.with_suffix(".pts") if path.with_suffix(".pts").exists() else path.with_suffix(".txt")
-    img, landmarks = read_image(path), read_landmarks(beside)
+    img, landmarks = read_image(picture.image), read_landmarks(picture.landmarks)
     scale = SIDE / max(img.shape[:2])
     how = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
     resized = cv2.resize(img, None, fx=scale, fy=scale, interpolation=how)
@@ -148,4 +147,4 @@ def _rendered(model, raster: AtlasRaster, V: np.ndarray, inner: np.ndarray) -> n
 
 
 if __name__ == "__main__":
-    main([Path(path) for path in sys.argv[1:]] or sorted(PORTRAITS.glob("*.png")))
+    main(pictures(sys.argv[1:]))

@@ -29,21 +29,24 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from pictures import FOLDER, pictures, roles
 
 from toongeo import read_image, read_landmarks
 from toongeo.model.loaders.load_eos import load_eos
+from toongeo.pipeline import JawOptions, PriorOptions, SolverOptions
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 
 HERE = Path(__file__).parent
-EXAMPLES = HERE.parent / "examples" / "portraits"
 SHAPE, TABLE, EXPRESSION = "sfm_shape_3448.bin", "ibug_to_sfm.txt", "expression_blendshapes_3448.bin"
 # One pass, since no jaw point slides; a box that is never reached; every point alike; all but no prior on expressions.
 SAME_PROBLEM = FitOptions(
-    robust=None, max_passes=1, jaw_weight=1.0, jaw_tangent=1.0, max_deviation=50.0, expression_weight=1e-4,
-    tolerance=1e-12,
-)  # fmt: skip
-WITH_OUTLINE = replace(SAME_PROBLEM, jaw_tangent=0.0)
+    robust=None,
+    solver=SolverOptions(max_passes=1, tolerance=1e-12),
+    jaw=JawOptions(weight=1.0, tangent=1.0),
+    prior=PriorOptions(max_deviation=50.0, expression_weight=1e-4),
+)
+WITH_OUTLINE = replace(SAME_PROBLEM, jaw=JawOptions(weight=1.0, tangent=0.0))
 OUTLINE = np.array([*range(8), *range(9, 17)])  # point 8, the chin, has a vertex in eos's table
 LEAST_WEIGHT, GREATEST_WEIGHT = 1e-10, 1.0
 BORDER_PX = 800.0  # size at which the border of a face is drawn
@@ -142,13 +145,15 @@ def best_ms(calls, repeats):
     return times.min(axis=0)
 
 
+def found_pictures(shared):
+    return pictures([FOLDER, shared / "data" / "portraits"])
+
+
 def subjects(shared, seeds):
     """Name, landmarks, (width, height)."""
-    for folder in (EXAMPLES, shared / "data" / "portraits"):
-        for points in sorted(folder.glob("*.pts")):
-            picture = next(path for path in sorted(folder.glob(f"{points.stem}.*")) if path.suffix != ".pts")
-            height, width = read_image(picture).shape[:2]
-            yield points.stem, read_landmarks(points), (width, height)
+    for picture in found_pictures(shared):
+        height, width = read_image(picture.image).shape[:2]
+        yield picture.name, read_landmarks(picture.landmarks), (width, height)
     sys.path.insert(0, str(shared / "bench"))
     import ict_truth
 
@@ -179,6 +184,7 @@ def main() -> None:
         theirs_ms, ours_ms = best_ms(calls, arguments.repeats)
         table.append([*row, theirs_ms, ours_ms, theirs_ms / ours_ms])
         print(f"| {name} | " + " | ".join(f"{value:.2f}" for value in table[-1]) + " |", flush=True)
+    print(roles("eos", [picture.name for picture in found_pictures(arguments.shared)]))
     table = np.array(table)
     met = [f"{(table[:, k + 1] <= table[:, k]).sum()} of {len(table)}" for k in (1, 4, 6)]
     print(f"\nAt equal norm not worse than eos: RMS {met[0]}, with the outline RMS {met[1]}, outline {met[2]}.")

@@ -20,10 +20,10 @@ import time
 from pathlib import Path
 
 import numpy as np
+from pictures import FOLDER, roles
 
 from toongeo import load_avatar, make_avatar, read_image, read_landmarks
 
-EXAMPLES = Path(__file__).parents[1] / "examples" / "portraits"
 BARE = {"texture": None, "animation": None, "loadable": False}
 FILES = {
     "46 + eyes, sparse": ("a.glb", BARE),
@@ -45,14 +45,16 @@ FILES = {
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("pictures", nargs="*", type=Path, default=sorted(EXAMPLES.glob("*.png")))
-    avatars = [make_avatar(read_image(p), read_landmarks(p.with_suffix(".pts"))) for p in parser.parse_args().pictures]
+    parser.add_argument("pictures", nargs="*", type=Path, default=sorted(FOLDER.glob("*.png")))
+    paths = parser.parse_args().pictures
+    avatars = [make_avatar(read_image(p), read_landmarks(p.with_suffix(".pts"))) for p in paths]
     print(f"{len(avatars)} pictures\n{'':32}{'MB, most':>10}{'least':>8}{'save s':>9}{'load s':>9}{'off mm':>9}")
     with tempfile.TemporaryDirectory() as folder:
         for label, (name, options) in FILES.items():
             if name.endswith(".usdz") and importlib.util.find_spec("pxr") is None:
                 continue
-            print(row(label, avatars, Path(folder) / name, options))
+            print(row(label, avatars, Path(folder) / name, options), flush=True)
+    print(roles("files", [path.stem for path in paths]))
 
 
 def row(label: str, avatars: list, path: Path, options: dict) -> str:

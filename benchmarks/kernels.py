@@ -10,11 +10,11 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import cv2
 import igl
 import numpy as np
+from pictures import FOLDER
 
 from toongeo import (
     DeformationTransfer,
@@ -30,7 +30,7 @@ from toongeo import (
 )
 from toongeo.render import rasterize
 
-PICTURE = Path(__file__).parents[1] / "examples" / "portraits" / "blue_girl.png"
+PICTURE = FOLDER / "blue_girl.png"
 
 
 def best(run: Callable[[], object], times: int) -> float:

@@ -20,9 +20,9 @@ import sys
 import time
 from collections.abc import Iterator
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
+from pictures import pictures, roles
 from scipy.spatial import cKDTree
 
 from toongeo.io import read_landmarks
@@ -32,18 +32,12 @@ from toongeo.model.anatomy.lip_line import lip_line
 from toongeo.pipeline import AlignedFace, Rig, align_face, build_rig, fit_3dmm, fit_mouth, neutral_face
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
 
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 MOUTH = ("mouth", "jaw", "cheekPuff", "nose", "tongue")
 PARTS = ("teeth_upper", "teeth_lower", "tongue")
 ALLOWED = 0.1  # percentage points
 CROSSING = 0.3  # % of the mouth's width
 EVERY = 3  # every so manieth vertex of the teeth is looked at
 BOTH = "mouthClose+jawOpen"
-
-
-def landmark_files(folders: list[Path]) -> Iterator[Path]:
-    for folder in folders:
-        yield from sorted(path for path in folder.iterdir() if path.suffix in (".pts", ".txt"))
 
 
 def shapes(names: tuple[str, ...], neutral: np.ndarray, deltas: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
@@ -125,16 +119,17 @@ def seconds(face: AlignedFace, rig: Rig) -> float:
 
 
 def main() -> None:
-    folders = [Path(name) for name in sys.argv[1:]] or [PORTRAITS]
+    found = pictures(sys.argv[1:])
     print("| picture | rig | seal mean / max / front, % | crossings, % | intersecting above allowance | teeth | s |")
     print("|---|---|---|---|---|---|---|")
-    for path in landmark_files(folders):
-        landmarks = read_landmarks(path)
+    for picture in found:
+        landmarks = read_landmarks(picture.landmarks)
         face = neutral_face(align_face(fit_3dmm(None, landmarks), landmarks))
         plain = build_rig(face)
         rig = fit_mouth(face, plain)
-        print(f"| {path.stem} | transferred |", " | ".join(row(face, plain)), "| |")
+        print(f"| {picture.name} | transferred |", " | ".join(row(face, plain)), "| |")
         print("| | fitted |", " | ".join(row(face, rig)), f"| {seconds(face, rig):.2f} |", flush=True)
+    print(roles("lips", [picture.name for picture in found]))
 
 
 if __name__ == "__main__":

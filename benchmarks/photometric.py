@@ -12,10 +12,10 @@ import resource
 import sys
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import cv2
 import numpy as np
+from pictures import Picture, pictures, roles
 
 from toongeo import ScaledOrthographicCamera, default_model, fit_3dmm, photometric_fit, read_image, read_landmarks
 from toongeo.geometry import vertex_normals
@@ -23,7 +23,6 @@ from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.anatomy.visible_landmarks import visible_landmarks
 from toongeo.render import Surface, interpolate, irradiance, rasterize, render_mesh, sh_basis, srgb_to_linear
 
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 SUBJECTS = range(10)
 SIZE, NOISE = 512, 1.0  # px
 
@@ -109,25 +108,26 @@ def recovery():
         )
         print(f"| {seed} | " + " | ".join(f"{value:.2f}" for value in rows[-1]) + " |")
     print("| mean | " + " | ".join(f"{value:.2f}" for value in np.mean(rows, axis=0)) + " |")
+    print("\nWeights were chosen on seeds 20-29; these are only looked at.")
 
 
-def pictures(folders):
+def picture_rows(found: list[Picture]):
     print(
         "\n| picture | ambient % | lit % | fitted % | L_photo, fitted / ambient | / lit | confident % | s at 1024 px |"
     )
     print("|---|---|---|---|---|---|---|---|")
-    for folder in folders:
-        for points in sorted(folder.glob("*.pts")):
-            path = next(path for path in sorted(folder.glob(f"{points.stem}.*")) if path.suffix != ".pts")
-            img, landmarks = read_image(path), read_landmarks(points)
-            report = photometric_fit(img, fit_3dmm(img, landmarks), landmarks).photometric
-            values = [report.residual_ambient, report.residual_before, report.residual_after]
-            ambient, lit, fitted = (100 * value for value in values)
-            print(
-                f"| {points.stem} | {ambient:.1f} | {lit:.1f} | {fitted:.1f} "
-                f"| {(fitted / ambient) ** 2:.2f} | {(fitted / lit) ** 2:.2f} "
-                f"| {100 * report.confident_fraction:.0f} | {seconds_at_1024(img, landmarks):.3f} |"
-            )
+    for picture in found:
+        img, landmarks = read_image(picture.image), read_landmarks(picture.landmarks)
+        report = photometric_fit(img, fit_3dmm(img, landmarks), landmarks).photometric
+        values = [report.residual_ambient, report.residual_before, report.residual_after]
+        ambient, lit, fitted = (100 * value for value in values)
+        print(
+            f"| {picture.name} | {ambient:.1f} | {lit:.1f} | {fitted:.1f} "
+            f"| {(fitted / ambient) ** 2:.2f} | {(fitted / lit) ** 2:.2f} "
+            f"| {100 * report.confident_fraction:.0f} | {seconds_at_1024(img, landmarks):.3f} |",
+            flush=True,
+        )
+    print(roles("photometric", [picture.name for picture in found]))
 
 
 def seconds_at_1024(img, landmarks):
@@ -145,7 +145,7 @@ def seconds_at_1024(img, landmarks):
 
 def main():
     recovery()
-    pictures([Path(name) for name in sys.argv[1:]] or [PORTRAITS])
+    picture_rows(pictures(sys.argv[1:]))
     print(f"\nlargest memory {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
 
 

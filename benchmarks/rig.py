@@ -20,6 +20,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from pictures import Picture, pictures, roles
 
 from toongeo import (
     Animator,
@@ -42,7 +43,6 @@ from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.pipeline.rig.build_rig import AT_ONCE
 from toongeo.pipeline.rig.fit_pose import fit_pose
 
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 MOVES_MM = 0.05
 Mesh = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
@@ -131,10 +131,10 @@ def resource_mb() -> int:
     return int(line.split()[1]) // 1024
 
 
-def picture_rows(name: str) -> None:
+def picture_row(picture: Picture) -> None:
     """One picture: how well its pose comes back, gains, and the whole stage."""
-    landmarks = read_landmarks(PORTRAITS / f"{name}.pts")
-    face = align_face(fit_3dmm(read_image(PORTRAITS / f"{name}.png"), landmarks), landmarks)
+    landmarks = read_landmarks(picture.landmarks)
+    face = align_face(fit_3dmm(read_image(picture.image), landmarks), landmarks)
 
     def stage() -> tuple[Rig, np.ndarray, np.ndarray]:
         at_rest = neutral_face(face)
@@ -152,7 +152,7 @@ def picture_rows(name: str) -> None:
     gains = [float(np.linalg.norm(a) / np.linalg.norm(b)) for a, b in zip(auto.deltas, plain.deltas, strict=True)]
     opened, wide = (gains[plain.names.index(expression)] for expression in ("jawOpen", "eyeWideLeft"))
     print(
-        f"| {name} | {seconds:.2f} | {moved:.2f} | {left:.2f} |"
+        f"| {picture.name} | {seconds:.2f} | {moved:.2f} | {left:.2f} |"
         f" {min(gains):.2f} .. {max(gains):.2f} | {opened:.2f} | {wide:.2f} |",
         flush=True,
     )
@@ -169,8 +169,10 @@ def main() -> None:
     memory(path)
     print("\n| picture | whole rig s | removed mm | pose misses mm | gains | jawOpen | eyeWideLeft |")
     print("|---|---|---|---|---|---|---|")
-    for picture in sorted(PORTRAITS.glob("*.png")):
-        picture_rows(picture.stem)
+    found = pictures()
+    for picture in found:
+        picture_row(picture)
+    print(roles("rig", [picture.name for picture in found]))
 
 
 if __name__ == "__main__":

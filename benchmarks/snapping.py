@@ -16,11 +16,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from pictures import FOLDER, pictures, roles
 
 from toongeo import parse_face, read_image, read_landmarks, snap_eyes
 from toongeo.model.ibug68 import OUTER_EYES, PARTS
 
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 EYES = (PARTS["eye_right"], PARTS["eye_left"])
 KINDS = ("shrink", "shift")
 AMOUNTS = 0.05, 0.12  # of the outer-eye distance
@@ -60,22 +60,14 @@ def eye_error(points: np.ndarray, truth: np.ndarray) -> float:
     return 100 * float(np.mean([lid_distance(points[eye], truth[eye]) for eye in EYES])) / outer_eyes(truth)
 
 
-def pictures(folder: Path) -> list[tuple[Path, Path]]:
-    """Pictures of a folder with their landmark files."""
-    points = sorted(path for path in folder.iterdir() if path.suffix in (".pts", ".txt"))
-    found = [
-        (next((p for p in sorted(folder.glob(f"{q.stem}.*")) if p.suffix in (".png", ".jpg")), None), q) for q in points
-    ]
-    return [(picture, points) for picture, points in found if picture is not None]
-
-
 def main() -> None:
     print("| picture | kind | before % | nearest % | arc % | fall % |")
     print("|---|---|---|---|---|---|")
-    for folder in [Path(name) for name in sys.argv[1:]] or [PORTRAITS]:
-        falls = []
-        for picture, points in pictures(folder):
-            img, truth = read_image(picture), read_landmarks(points)
+    names: list[str] = []
+    for folder in [Path(name) for name in sys.argv[1:]] or [FOLDER]:
+        falls = {}
+        for picture in pictures([folder]):
+            img, truth = read_image(picture.image), read_landmarks(picture.landmarks)
             total = np.zeros(3)
             for kind in KINDS:
                 errors = np.zeros(3)
@@ -85,10 +77,13 @@ def main() -> None:
                     found = (given, snap_eyes(given, parse, mode="nearest"), snap_eyes(given, parse))
                     errors += [eye_error(landmarks, truth) / SEEDS for landmarks in found]
                 total += errors / len(KINDS)
-                print_row(picture.stem, kind, errors)
-            print_row(picture.stem, "both", total)
-            falls.append(1 - total[2] / total[0])
-        print(f"| {folder.name}: mean, least | both | | | | {100 * np.mean(falls):.0f}, {100 * np.min(falls):.0f} |")
+                print_row(picture.name, kind, errors)
+            print_row(picture.name, "both", total)
+            falls[picture.name] = 100 * (1 - total[2] / total[0])
+        found = list(falls.values())
+        print(f"| {folder.name}: mean, least | both | | | | {np.mean(found):.0f}, {np.min(found):.0f} |")
+        names += falls
+    print(roles("snapping", names))
 
 
 def print_row(name: str, kind: str, errors: np.ndarray) -> None:

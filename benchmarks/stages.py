@@ -14,16 +14,16 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from pictures import FOLDER, roles
 
 from toongeo import default_model, make_avatar, read_image, read_landmarks
 from toongeo.avatar.make_avatar import STAGES
 
 RUNS = 5
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 
 
 def main() -> None:
-    picture, points = sys.argv[1:] or (PORTRAITS / "beethoven.png", PORTRAITS / "beethoven.pts")
+    picture, points = sys.argv[1:] or (FOLDER / "beethoven.png", FOLDER / "beethoven.pts")
     img, landmarks = read_image(picture), read_landmarks(points)
     scale = 1024 / max(img.shape[:2])
     img = cv2.resize(img, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
@@ -43,6 +43,7 @@ def main() -> None:
     for stage, seconds, first in zip(STAGES, np.median(runs, 0), runs[0], strict=True):
         print(f"| {stage} | {seconds:.3f} | {first:.3f} |")
     print(f"| whole way | {np.median(totals):.3f} | {totals[0]:.3f} |")
+    print(roles("stages", [Path(picture).stem]))
 
 
 if __name__ == "__main__":

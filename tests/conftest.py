@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.sharing import Once
+
 ROOT = Path(__file__).parents[1]
 WEB = ROOT / "tests" / "web"
 PORTRAITS = ROOT / "examples" / "portraits"
@@ -88,11 +90,48 @@ def cartoon():
 
 
 @pytest.fixture(scope="session")
-def avatar(cartoon):
-    """The avatar of one bundled picture, built once."""
+def once(tmp_path_factory):
+    """``once(key, make)`` -> what ``make()`` gives, made once for a run, also if it has several processes."""
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    return Once(None if alone else tmp_path_factory.getbasetemp().parent)
+
+
+@pytest.fixture(scope="session")
+def avatars(once, cartoon):
+    """``avatars(name)`` -> `make_avatar` of a bundled picture."""
     from toongeo import make_avatar
 
-    return make_avatar(*cartoon("moustache_man"))
+    return lambda name: once(f"avatar-{name}", lambda: make_avatar(*cartoon(name)))
+
+
+@pytest.fixture(scope="session")
+def avatar(avatars):
+    """The avatar of one bundled picture."""
+    return avatars("moustache_man")
+
+
+@pytest.fixture(scope="session")
+def fits(once, cartoon):
+    """``fits(name)`` -> `fit_3dmm` of a bundled picture."""
+    from toongeo import fit_3dmm
+
+    return lambda name: once(f"fit-{name}", lambda: fit_3dmm(*cartoon(name)))
+
+
+@pytest.fixture(scope="session")
+def aligned(once, cartoon, fits):
+    """``aligned(name)`` -> `align_face` of its fit, as drawn: no expression is taken out of it."""
+    from toongeo import align_face
+
+    return lambda name: once(f"aligned-{name}", lambda: align_face(fits(name), cartoon(name)[1]))
+
+
+@pytest.fixture(scope="session")
+def transferred(once, aligned):
+    """``transferred(name)`` -> `build_rig` of its aligned face, before lids and mouth are fitted."""
+    from toongeo import build_rig
+
+    return lambda name: once(f"rig-{name}", lambda: build_rig(aligned(name)))
 
 
 @pytest.fixture(scope="session")

@@ -5,6 +5,8 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 from tests.conftest import PORTRAITS, ROOT
 
 CODE = """
@@ -14,6 +16,7 @@ toongeo.make_avatar(img, landmarks).save(sys.argv[2])
 """
 
 
+@pytest.mark.slow
 def test_processes_and_threads_make_no_difference(tmp_path):
     digests = set()
     for threads in ("1", "2"):

@@ -270,7 +270,10 @@ class TextureGeometry:
 
 
 class TextureGenerator(Protocol):
-    """What an expression does to the colours of a face (Chen et al. 2020, section 3.3); a network, say."""
+    """What an expression does to the colours of a face (Chen et al. 2020, section 3.3); a network, say.
+
+    It need not know where lids close and lips part, nor draw lashes: :class:`toongeo.ExpressionEditor` does.
+    """
 
     def __call__(
         self, texture: np.ndarray, source: np.ndarray, target: np.ndarray, geometry: TextureGeometry

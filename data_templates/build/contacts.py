@@ -65,11 +65,6 @@ def opening(loop: Ints, mean: Floats) -> Opening:
     return Opening(upper, lower, *t)
 
 
-def lip_opening(cage: Cage, mean: Floats) -> Opening:
-    """The line where the lips meet."""
-    return opening(cage.local(skin_walk(cage).loop(*LIP_RIM)), mean)
-
-
 def skin_walk(cage: Cage) -> QuadWalk:
     """The skin in base-mesh ids."""
     return QuadWalk(cage.source[cage.quads["skin"]])

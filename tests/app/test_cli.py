@@ -128,3 +128,20 @@ def test_landmarks_opens_the_editor(tmp_path, monkeypatch, capsys):
     capsys.readouterr()
     assert main(["landmarks", str(PICTURE), "-o", str(PICTURE)]) == 2
     assert "output: expected one of" in capsys.readouterr().err
+
+
+def test_make_takes_landmarks_of_another_scheme(tmp_path, capsys, monkeypatch):
+    import numpy as np
+
+    from toongeo.io import read_landmarks
+
+    points = tmp_path / "inner.npy"
+    np.save(points, read_landmarks(POINTS)[17:])
+    given = {}
+    monkeypatch.setattr("toongeo.app.make.make_avatar", lambda img, points, **options: given.update(options, at=points))
+    arguments = ["make", str(PICTURE), "--landmarks", str(points), "-o", str(tmp_path / "a.ply")]
+    assert main(arguments) == 2
+    assert "expected 68 points in iBUG order, got 51" in capsys.readouterr().err
+    with pytest.raises(AttributeError):  # of the stand-in, which gives no avatar to save
+        main([*arguments, "--scheme", "ibug51"])
+    assert given["scheme"] == "ibug51" and given["at"].shape == (51, 2)

@@ -171,7 +171,7 @@ def test_an_aligned_caricature_is_the_caricature(fit, girl):
     np.testing.assert_array_equal(face.vertices, fit.vertices)
     assert face.fit is fit.fit
     assert face.camera.scale == fit.camera.scale
-    assert face.report["rms_px"] == fit.report.rms_px
+    assert face.report.rms_px == fit.report.rms_px
 
 
 def test_a_warp_reproduces_affine_maps_of_the_skin(face_space, rng):
@@ -231,7 +231,8 @@ def test_missing_landmarks_hold_nothing(fit, girl, face_space):
     moved = fewer.copy()
     there = fit_caricature(None, fewer, space=face_space)
     assert there.report.rms_px < 0.03
-    assert np.isfinite(there.vertices).all()
+    away = np.linalg.norm(there.vertices - fit.vertices, axis=1)[fit.landmark_vertices]
+    assert np.delete(away, [30, 33]).max() < 3 and away[[30, 33]].max() < 15  # mm
     np.testing.assert_array_equal(fewer, moved)
 
 

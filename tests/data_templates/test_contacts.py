@@ -8,7 +8,7 @@ from toongeo.model.artist_model import artist_model
 from toongeo.render.camera import ScaledOrthographicCamera
 from toongeo.render.rasterize import rasterize
 
-pymeshlab = pytest.importorskip("pymeshlab")
+pymeshlab = pytest.importorskip("pymeshlab", reason="needs pymeshlab")
 
 JAW_UNITS = ("jawForward", "jawLeft", "jawOpen", "jawRight")
 

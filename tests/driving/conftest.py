@@ -54,7 +54,5 @@ def rms(errors):
 
 
 @pytest.fixture(scope="session")
-def performers(avatar, cartoon):
-    from toongeo import make_avatar
-
-    return {"moustache_man": avatar, **{name: make_avatar(*cartoon(name)) for name in ("blue_girl", "astronaut")}}
+def performers(avatars):
+    return {name: avatars(name) for name in ("moustache_man", "blue_girl", "astronaut")}

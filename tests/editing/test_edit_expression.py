@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 
 from toongeo import ExpressionEditor, edit_expression, fit_3dmm
 from toongeo.editing.edit_expression import reference_weights
+from toongeo.model.anatomy.lid_rings import lid_rings
 
 OPEN = {"jawOpen": 0.6}
 
@@ -111,6 +114,39 @@ def test_textures_of_another_size_are_refused(picture, avatar):
     )
     with pytest.raises(ValueError, match="texture: expected 64 x 64 texels"):
         editor.frame(OPEN)
+
+
+def test_any_generator_gets_lids_and_lashes(picture, editor):
+    class Foreign:
+        """Keeps the colours as they are, and knows nothing of lids."""
+
+        def __call__(self, texture, source, target, geometry):
+            return texture, np.ones(texture.shape[:2], np.float32)
+
+    img, avatar, blink = picture[0], editor.avatar, {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
+    frames = {
+        "default": editor.frame(blink),
+        "foreign": ExpressionEditor(*picture, avatar=avatar, generator=Foreign()).frame(blink),
+        # The default one behind another type: nothing asks who it is.
+        "wrapped": ExpressionEditor(*picture, avatar=avatar, generator=lambda *given: editor._generator(*given)).frame(
+            blink
+        ),
+    }
+    assert (frames["wrapped"] == frames["default"]).all()
+    # Along the outer edge of a closed upper lid runs a line as dark as the lashes, whatever the texture shows there.
+    for side in ("left", "right"):
+        row = lid_rings(avatar.face.model, side).upper[2]
+        x, y = np.rint(avatar.face.project(editor.vertices(blink)[row[3:-3]])).astype(int).T
+        for name in ("default", "foreign"):
+            line = frames[name][y, x].astype(float)
+            assert np.abs(line - editor._new_skin.lash_colour).max(1).mean() < 60, (side, name)
+    assert (frames["foreign"] != img).any()
+
+
+def test_an_editor_needs_lids_and_a_mouth(picture, avatar):
+    bare = replace(avatar, face=replace(avatar.face, model=replace(avatar.face.model, eyes=())))
+    with pytest.raises(ValueError, match="avatar: expected one whose model has eyes, uv, mouth_cavity"):
+        ExpressionEditor(*picture, avatar=bare)
 
 
 def test_a_reference_lends_its_expression(cartoon, editor):

@@ -197,6 +197,8 @@ def test_a_collapsed_triangle_in_the_deformed_source_is_allowed(bumpy, deformed,
     source, F = bumpy
     deformed = deformed.copy()
     deformed[F[10]] = deformed[F[10, 0]]
+    onto_itself = deformation_transfer(source, deformed, F, source)
+    np.testing.assert_allclose(onto_itself - onto_itself.mean(0), deformed - deformed.mean(0), atol=1e-9)
     assert np.isfinite(deformation_transfer(source, deformed, F, target)).all()
 
 

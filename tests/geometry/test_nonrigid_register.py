@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from toongeo.geometry import nonrigid_register, vertex_normals
-from toongeo.geometry.facing_surface import FacingSurface, barycentric
+from toongeo.geometry.registration.thin_shell import ThinShell
 
 LANDMARKS = np.array([0, 20, 57, 130, 200, 301, 377])
 
@@ -95,6 +95,35 @@ def test_the_two_sides_of_a_thin_part_are_not_confused(sphere):
     normals = vertex_normals(thin, F)[F[found.faces]]
     towards = np.einsum("pc,pcd->pd", found.barycentric, normals)[:, 2]
     assert (np.sign(towards) == np.sign(V[:, 2]))[inner & (np.abs(V[:, 2]) > 0.1)].all()
+
+
+def test_distances_are_those_to_the_partners_in_the_unit_of_the_target(bumpy, rotation):
+    V, F = bumpy
+    target = 70 * warped(V) @ rotation.T + [1, 2, 3]
+    found = nonrigid_register(V, F, target, F, LANDMARKS, LANDMARKS, iterations=1)
+    partners = np.einsum("pc,pcd->pd", found.barycentric, target[F[found.faces]])
+    np.testing.assert_allclose(found.distances, np.linalg.norm(found.vertices - partners, axis=1), atol=1e-9)
+    np.testing.assert_allclose(
+        found.landmark_errors, np.linalg.norm(found.vertices - target, axis=1)[LANDMARKS], atol=1e-9
+    )
+    assert found.distances.max() > 0.1
+
+
+@pytest.mark.parametrize(("step", "status"), [(0.99e-3, "converged"), (1.01e-3, "iteration limit")])
+def test_a_last_step_of_a_thousandth_has_converged(bumpy, monkeypatch, step, status):
+    V, F = bumpy
+    monkeypatch.setattr(ThinShell, "laid_on", lambda self, *_: (self.V, step))
+    assert nonrigid_register(V, F, V, F, LANDMARKS, LANDMARKS).status == status
+
+
+@pytest.mark.parametrize(("off", "near"), [(0.099, True), (0.101, False)])
+def test_a_partner_within_a_tenth_of_the_spread_of_the_landmarks_is_one(bumpy, monkeypatch, off, near):
+    V, F = bumpy
+    monkeypatch.setattr(ThinShell, "laid_on", lambda self, *_: (self.V + off * vertex_normals(self.V, F), 0.0))
+    found = nonrigid_register(V, F, V, F, LANDMARKS, LANDMARKS)
+    unit = np.sqrt(((V[LANDMARKS] - V[LANDMARKS].mean(0)) ** 2).sum(1).mean())
+    facing = found.distances > 0.995 * off * unit  # elsewhere the surface bends towards the point
+    assert facing.sum() > 100 and (found.matched[facing] == near).all()
 
 
 def test_landmarks_are_vertices_or_points(bumpy):
@@ -191,24 +220,3 @@ def test_degenerate_triangles_of_the_target_do_no_harm(bumpy):
     V, F = bumpy
     found = nonrigid_register(V, F, V, np.vstack([F, [[0, 0, 1], [5, 5, 5]]]), LANDMARKS, LANDMARKS)
     np.testing.assert_allclose(found.vertices, V, atol=1e-9)
-
-
-def test_closest_points_of_a_triangle(rng):
-    triangle = rng.normal(size=(1, 3, 3))
-    points = rng.normal(size=(500, 3)) * 2
-    bary = barycentric(points, np.repeat(triangle, 500, axis=0))
-    assert (bary >= 0).all() and np.allclose(bary.sum(1), 1)
-    grid = np.stack(np.meshgrid(*[np.linspace(0, 1, 201)] * 2), -1).reshape(-1, 2)
-    grid = grid[grid.sum(1) <= 1]
-    samples = np.column_stack([1 - grid.sum(1), grid]) @ triangle[0]
-    distance = np.linalg.norm(points - bary @ triangle[0], axis=1)
-    sampled = np.linalg.norm(points[:, None] - samples, axis=2).min(1)
-    assert (distance <= sampled + 1e-12).all() and np.abs(distance - sampled).max() < 0.05
-
-
-def test_partners_face_the_same_way(bumpy):
-    V, F = bumpy
-    surface = FacingSurface(V, F)
-    triangles, bary, cosines = surface.closest(V, surface.normals)
-    np.testing.assert_allclose(surface.points(triangles, bary), V, atol=1e-12)
-    assert (cosines > 0.99).all()

@@ -39,3 +39,12 @@ def test_pixels_on_a_line_are_refused(points, slope):
 def test_pixels_in_one_place_are_refused(points):
     with pytest.raises(ValueError, match="points on a line"):
         scaled_orthographic_pose(points, np.full((30, 2), 7.0))
+
+
+def test_a_weight_counts_as_so_many_points(points, rng):
+    pixels = ScaledOrthographicCamera.look(yaw=20).project(points) + rng.normal(0, 5, (30, 2))
+    counts = rng.integers(0, 5, 30)
+    weighted = scaled_orthographic_pose(points, pixels, 0.1 * counts)
+    repeated = scaled_orthographic_pose(np.repeat(points, counts, axis=0), np.repeat(pixels, counts, axis=0))
+    for found, expected in zip(weighted, repeated, strict=True):
+        np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-12)

@@ -96,7 +96,7 @@ def test_brute_force_on_a_soup():
 
 
 def test_the_same_faces_as_meshlab(bumpy):
-    pymeshlab = pytest.importorskip("pymeshlab")
+    pymeshlab = pytest.importorskip("pymeshlab", reason="needs pymeshlab")
     V, F = bumpy
     rng = np.random.default_rng(2)
     twice = np.concatenate([V, 1.05 * V[:, [1, 2, 0]]]), np.concatenate([F, F + len(V)])

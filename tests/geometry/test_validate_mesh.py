@@ -52,3 +52,11 @@ def test_degenerate_triangles_are_found_at_every_scale(scale):
     validate_mesh(V * scale, faces)
     with pytest.raises(ValueError, match=r"got 3 degenerate of 4, the first F\[1\] = \[0, 1, 3\]"):
         validate_mesh(V * scale, faces, nondegenerate=True)
+
+
+def test_only_what_one_rounding_error_decides_is_degenerate():
+    """The height over an edge of length 1 is the ratio itself."""
+    heights = np.array([1e-10, 1e-11, 2e-12, 5e-13, 1e-13])
+    for height, lost in zip(heights, heights < 1e-12, strict=True):
+        thin = np.array([[0, 0, 0], [1, 0, 0], [0.5, height, 0]])
+        assert degenerate_triangles(thin, F).tolist() == [lost]

@@ -1,8 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from toongeo.geometry import catmull_clark
-from toongeo.model import data_path, default_model
+from toongeo.model import MorphableModel, data_path, default_model
 from toongeo.model.artist_model import artist_model
 
 
@@ -52,3 +54,34 @@ def test_bad_arguments_are_named(model):
     with pytest.raises(ValueError, match="name: no expression 'smile_left'; did you mean"):
         model.expression_index("smile_left")
     assert model.expression_names[model.expression_index("jawOpen")] == "jawOpen"
+
+
+def bare(model, **given):
+    return MorphableModel(
+        **{"mean": model.mean, "faces": model.faces, "identity": model.identity, "landmarks": model.landmarks} | given
+    )
+
+
+def test_a_model_of_bare_skin_has_nothing_else(model):
+    skin = bare(model)
+    for name in ("quads", "uv", "uv_faces", "eyes", "albedo", "expression", "mouth", "jawOpen", "ears"):
+        assert model.has(name) and not skin.has(name), name
+    assert model.has("eyes", "mouth") and not replace(model, eyes=()).has("eyes", "mouth")
+    assert skin.region("face").all() and skin.region("skin").all() and not skin.region("ears").any()
+    np.testing.assert_array_equal(skin.mirror, model.mirror)  # of a symmetric mesh, from its shape alone
+    assert [line.tolist() for line in skin.contour_lines] == [[v] for v in model.landmarks[:17]]
+    assert np.ptp(skin.albedo_mean) == 0 and skin.albedo_mean.shape == model.mean.shape
+    np.testing.assert_array_equal(skin.vertices(expression=np.zeros(0)), model.mean)
+    with pytest.raises(ValueError, match=r"expression: expected shape \(0,\), got \(1,\)"):
+        skin.vertices(expression=[1.0])
+
+
+def test_skin_is_what_does_not_lie_behind_it(model):
+    inner = {name: model.regions[name] for name in ("teeth_upper", "neck")}
+    skin = bare(model, regions=inner).region("skin")
+    np.testing.assert_array_equal(skin, ~(inner["teeth_upper"] | inner["neck"]))
+
+
+def test_landmarks_are_vertices(model):
+    with pytest.raises(ValueError, match=r"landmarks: expected vertices in 0..\d+, got -1 to"):
+        bare(model, landmarks=np.r_[-1, model.landmarks[1:]])

@@ -11,6 +11,9 @@ from toongeo.app.bench.commands import add_bench
 __all__ = ["main"]
 
 
+_SCHEME = "of the landmarks: ibug68 (default), ibug51, ibug49 or mediapipe478, all in px"
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line.
 
@@ -42,7 +45,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     make = commands.add_parser("make", help="turn a picture and its landmarks into an avatar")
     make.add_argument("image", type=Path, metavar="IMAGE")
-    make.add_argument("--landmarks", type=Path, required=True, metavar="FILE", help=".pts, .npy, .csv or .txt")
+    make.add_argument("--landmarks", type=Path, required=True, metavar="FILE", help=".pts, .npy, .csv, .txt or .json")
     make.add_argument(
         "-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, .vrm, .html, .usdz, .obj, .ply"
     )
@@ -57,6 +60,7 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--author", action="append", metavar="NAME", help="for the licence of a .vrm; may be repeated")
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
     make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
+    make.add_argument("--scheme", default="ibug68", metavar="NAME", help=_SCHEME)
     make.set_defaults(run=_make)
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
@@ -69,7 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument("--no-open", action="store_true", help="only print where the page is")
     view.set_defaults(run=_view)
     rig = commands.add_parser("rig", help="give a neutral head of any topology the expressions")
-    rig.add_argument("mesh", type=Path, metavar="MESH", help=".obj, mouth closed and eyes open")
+    rig.add_argument("mesh", type=Path, metavar="MESH", help=".obj .ply .stl .off .glb, mouth closed and eyes open")
     rig.add_argument(
         "--landmarks",
         type=Path,
@@ -103,6 +107,7 @@ def _add_drive(commands: Any) -> None:
     drive.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4 or .glb")
     drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
     drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
+    drive.add_argument("--scheme", default="ibug68", metavar="NAME", help=_SCHEME)
     drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
     drive.set_defaults(run=_drive)
 
@@ -131,6 +136,7 @@ def _make(options: argparse.Namespace) -> None:
         crop=options.crop,
         snap=options.snap,
         photometric=options.photometric,
+        scheme=options.scheme,
         format=options.format,
         options=_saving(options),
     )
@@ -187,6 +193,7 @@ def _drive(options: argparse.Namespace) -> None:
         size=options.size,
         fps=options.fps,
         take_fps=options.take_fps,
+        scheme=options.scheme,
     )
 
 

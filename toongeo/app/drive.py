@@ -22,6 +22,7 @@ def drive(
     size: int = _SIZE,
     fps: float = _FPS,
     take_fps: float | None = None,
+    scheme: str = "ibug68",
 ) -> None:
     """Play a take on an avatar and write it down.
 
@@ -41,6 +42,8 @@ def drive(
         Of the video, or of the keys.
     take_fps : float, optional
         Of a take that does not say it.
+    scheme : str
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Raises
     ------
@@ -55,7 +58,9 @@ def drive(
     check_output(output, {"avatar": avatar, "weights": weights, "landmarks": landmarks})
     if (weights is None) == (landmarks is None):
         raise ValueError("weights, landmarks: expected one of the two")
-    take = read_take(weights, take_fps) if weights else read_landmark_take(Path(str(landmarks)), take_fps)
+    take = (
+        read_take(weights, take_fps) if weights else read_landmark_take(Path(str(landmarks)), take_fps, scheme=scheme)
+    )
     take = take.resampled(fps)
     face = load_avatar(avatar)
     if suffix == ".glb":

@@ -25,6 +25,7 @@ def make(
     crop: Crop = "head",
     snap: bool = False,
     photometric: bool = False,
+    scheme: str = "ibug68",
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> Avatar:
@@ -42,7 +43,7 @@ def make(
     saving = {"crop": crop, **(options or {})}
     writer_for(output, format, saving)
     check_output(output, {"image": image, "landmarks": landmarks}, format)
-    img, points = read_image(image), read_landmarks(landmarks)
+    img, points = read_image(image), read_landmarks(landmarks, scheme=scheme)
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
 
         def announce(stage: str) -> None:
@@ -50,7 +51,7 @@ def make(
             bar.set_description(stage)
 
         avatar = make_avatar(
-            img, points, snap=snap, photometric=photometric, texture_size=texture_size, progress=announce
+            img, points, snap=snap, photometric=photometric, texture_size=texture_size, scheme=scheme, progress=announce
         )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")

@@ -30,11 +30,11 @@ def read_take(path: Path, fps: float | None = None) -> Take:
     return ArkitDriver().take(frames, fps or 30.0)
 
 
-def read_landmark_take(path: Path, fps: float | None = None) -> Take:
+def read_landmark_take(path: Path, fps: float | None = None, *, scheme: str = "ibug68") -> Take:
     """A take from an ``.npy`` of landmarks (f, 68, 2) px, the first frame of which shows the neutral face."""
     frames = _array(path)
     neutral = frames[0] if frames.ndim == 3 and len(frames) else frames
-    weights = LandmarkDriver(neutral).frames(frames, fps or 30.0)
+    weights = LandmarkDriver(neutral, scheme=scheme).frames(frames, fps or 30.0)
     return Take.of_frames(weights, fps or 30.0)
 
 

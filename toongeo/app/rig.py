@@ -1,17 +1,19 @@
 """``toongeo rig``: a neutral head from anywhere into a file with its expressions."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from toongeo.app.check_output import check_output
-from toongeo.io import Scene, SceneMesh, read_image, read_mesh_landmarks, read_obj, write_glb
+from toongeo.io import MESH_SUFFIXES, Scene, read_image, read_mesh, read_mesh_landmarks, write_glb
 from toongeo.io.scene import METRES
 from toongeo.pipeline import Rig, rig_mesh
 
 __all__ = ["rig"]
 
 _TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored
+_UNCUT = (".obj", ".off")  # say which corners are one vertex; the others repeat vertices along seams
 
 
 def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = None) -> Rig:
@@ -20,13 +22,14 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     Parameters
     ----------
     mesh : Path
-        ``.obj`` of a neutral head; polygons are cut into triangles.
+        ``.obj``, ``.ply``, ``.stl``, ``.off`` or ``.glb`` of a neutral head; see :func:`toongeo.io.read_mesh`.
     landmarks : Path
-        See :func:`toongeo.io.read_mesh_landmarks`.
+        See :func:`toongeo.io.read_mesh_landmarks`. Vertices are counted through all meshes of the file.
     output : Path
-        ``.glb``. Its coordinates are those of the mesh file, its texture coordinates too.
+        ``.glb``. Its coordinates are those of the mesh file, and so are its texture coordinates, textures, and the
+        order of its vertices.
     texture : Path, optional
-        Picture for the texture coordinates.
+        Picture for the texture coordinates, in place of that of the file.
 
     Raises
     ------
@@ -37,29 +40,33 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     if output.suffix.lower() != ".glb":
         raise ValueError(f"output: expected a name that ends in .glb, got {output}")
     check_output(output, {"mesh": mesh, "landmarks": landmarks, "texture": texture})
-    if mesh.suffix.lower() != ".obj":
-        raise ValueError(f"mesh: expected a name that ends in .obj, got {mesh}")
-    read = read_obj(mesh)
-    faces, uv_faces, _ = read.triangles()
-    uv = read.uv if len(read.uv) and (uv_faces >= 0).all() else None
-    if texture is not None and uv is None:
-        raise ValueError(f"texture: expected a mesh with texture coordinates at every corner, got {mesh} without")
-    picture = None if texture is None else read_image(texture)
-    found = rig_mesh(read.vertices, faces, read_mesh_landmarks(landmarks, read.vertices))
-    head = SceneMesh(
-        name="head",
-        vertices=found.neutral / METRES,
-        faces=faces,
-        uv=uv,
-        uv_faces=None if uv is None else uv_faces,
-        texture=picture,
-        targets=found.deltas.astype(np.float64) / METRES,
-        target_names=found.names,
-    )
-    size = float(np.linalg.norm(np.ptp(head.vertices, axis=0)))
-    write_glb(output, Scene((head,)), tolerance_mm=_TOLERANCE * size)
+    if mesh.suffix.lower() not in MESH_SUFFIXES:
+        raise ValueError(f"mesh: expected a name that ends in {', '.join(MESH_SUFFIXES)}, got {mesh}")
+    parts = read_mesh(mesh).meshes
+    if texture is not None:
+        if any(part.uv is None for part in parts):
+            raise ValueError(f"texture: expected a mesh with texture coordinates at every corner, got {mesh} without")
+        picture = read_image(texture)
+        parts = tuple(replace(part, texture=picture) for part in parts)
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    vertices = np.vstack([part.vertices for part in parts])
+    faces = np.vstack([part.faces + start for part, start in zip(parts, starts, strict=False)])
+    weld = mesh.suffix.lower() not in _UNCUT
+    found = rig_mesh(vertices, faces, read_mesh_landmarks(landmarks, vertices), weld=weld)
+    rigged = [
+        replace(
+            part,
+            name="head" if len(parts) == 1 else part.name,
+            vertices=part.vertices / METRES,
+            targets=found.deltas[:, start : start + len(part.vertices)].astype(np.float64) / METRES,
+            target_names=found.names,
+        )
+        for part, start in zip(parts, starts, strict=False)
+    ]
+    size = float(np.linalg.norm(np.ptp(vertices, axis=0))) / METRES
+    write_glb(output, Scene(tuple(rigged)), tolerance_mm=_TOLERANCE * size)
     report = found.report
-    print(f"{len(found.names)} expressions on {len(read.vertices)} vertices in {report['seconds']:.1f} s")
-    print(f"{report['matched']:.1%} of the template's face found a partner, mean distance {report['distance']:.3g}")
+    print(f"{len(found.names)} expressions on {len(vertices)} vertices in {report.seconds:.1f} s")
+    print(f"{report.matched:.1%} of the template's face found a partner, mean distance {report.distance:.3g}")
     print(f"wrote {output}")
     return found

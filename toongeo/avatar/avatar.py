@@ -1,15 +1,20 @@
 """A textured, rigged face."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from toongeo.avatar.avatar_trimesh import avatar_trimesh
+from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.save_avatar import save_avatar
 from toongeo.avatar.stages import AvatarStages
+from toongeo.model import atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.protocols import Camera
 from toongeo.render import (
@@ -19,6 +24,9 @@ from toongeo.render import (
     render_mesh,
     studio_light,
 )
+
+if TYPE_CHECKING:
+    import trimesh
 
 __all__ = ["Avatar", "Weights"]
 
@@ -74,13 +82,17 @@ class Avatar(AvatarStages):
         """Vertices (k, 3), mm, of the left (0) or right (1) eyeball; weights and errors as for :meth:`vertices`."""
         if side not in (0, 1):
             raise ValueError(f"side: expected 0 (left) or 1 (right), got {side!r}")
+        count = len(self.eyes.templates)
+        if side >= count:
+            raise ValueError(f"side: expected an eyeball of the model, which has {count}, got {side}")
         gaze = self.rig.weights(weights)[len(self.names) :]
         return self.eyes.looking(side, dict(zip(GAZE_NAMES, gaze.tolist(), strict=True)))
 
     def surfaces(self, weights: Weights = None) -> list[Surface]:
         """Head, left and right eyeball, textured, for :func:`toongeo.render_mesh`."""
         model = self.face.model
-        head = Surface(self.vertices(weights), model.faces, uv=model.uv, uv_faces=model.uv_faces, texture=self.texture)
+        atlas = atlas_coordinates(model)
+        head = Surface(self.vertices(weights), model.faces, uv=atlas.uv, uv_faces=atlas.uv_faces, texture=self.texture)
         eyes = [
             Surface(
                 self.eye_vertices(side, weights),
@@ -133,6 +145,32 @@ class Avatar(AvatarStages):
             return render_mesh(surfaces, camera, size, shading="clay")
         # The texture holds the light of the picture already: a soft light shows the shape without shading it twice.
         return render_mesh(surfaces, camera, size, light=_soft_light())
+
+    def to_trimesh(self, weights: Weights = None, *, crop: Crop = "head", textured: bool = True) -> trimesh.Scene:
+        """Head, teeth, tongue and eyeballs with an expression, as ``trimesh.Trimesh`` objects.
+
+        Parameters
+        ----------
+        weights
+            As for :meth:`vertices`.
+        crop : {"head", "bust", "face"}
+            As for :meth:`save`.
+        textured : bool
+            True: with the texture, for which vertices on seams are repeated. False: vertices and triangles alone; those
+            of a whole head without its parts are ``trimesh.Trimesh(avatar.vertices(), avatar.faces, process=False)``.
+
+        Returns
+        -------
+        trimesh.Scene
+            Geometries ``head``, ``teeth``, ``tongue``, ``eye_left`` and ``eye_right``; mm, model frame.
+
+        Raises
+        ------
+        ValueError
+            For weights as :meth:`vertices`; for an unknown crop.
+        """
+        eyes = [self.eye_vertices(side, weights) for side in range(len(self.eyes.templates))]
+        return avatar_trimesh(self, self.vertices(weights), eyes, crop=crop, textured=textured)
 
     def save(self, path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> None:
         """Write a file by its suffix, or what a format names.

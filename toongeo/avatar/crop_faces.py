@@ -25,7 +25,7 @@ def crop_faces(model: MorphableModel, crop: Crop) -> np.ndarray:
     Raises
     ------
     ValueError
-        If the crop is unknown, or the model has no region ``face``.
+        If the crop is unknown.
 
     Examples
     --------
@@ -37,7 +37,7 @@ def crop_faces(model: MorphableModel, crop: Crop) -> np.ndarray:
         raise ValueError(f"crop: expected one of {', '.join(get_args(Crop))}, got {crop!r}")
     if crop != "face":
         return np.arange(len(model.faces))
-    inner = [model.regions[name] for name in INNER_PARTS if name in model.regions]
+    inner = [model.region(name) for name in INNER_PARTS]
     kept = np.any([model.region("face"), *inner], axis=0)
     quads = len(model.faces) // 2
     whole = kept[model.faces].all(1)

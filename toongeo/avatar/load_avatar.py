@@ -8,7 +8,7 @@ from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.scene import head_parts
 from toongeo.avatar.state import decode_state
 from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, split_seams
-from toongeo.model import MorphableModel, default_model
+from toongeo.model import MorphableModel, atlas_coordinates, default_model
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 
 __all__ = ["load_avatar"]
@@ -86,7 +86,7 @@ def _rig_arrays(scene: Scene, model: MorphableModel) -> dict[str, np.ndarray]:
 def _file_vertices(mesh: SceneMesh, part: str, rows: np.ndarray, model: MorphableModel) -> np.ndarray:
     """Vertex of the model that each vertex of a mesh in the file is."""
     used, faces = np.unique(model.faces[rows], return_inverse=True)
-    _, uv_faces = np.unique(model.uv_faces[rows], return_inverse=True)
+    _, uv_faces = np.unique(atlas_coordinates(model).uv_faces[rows], return_inverse=True)
     vertex, _, split = split_seams(faces.reshape(-1, 3), uv_faces.reshape(-1, 3))
     if len(vertex) != len(mesh.vertices) or not np.array_equal(split, mesh.faces):
         got = f"{len(mesh.vertices)} vertices of {len(vertex)} in {part!r}"

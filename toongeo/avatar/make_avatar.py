@@ -3,11 +3,12 @@
 import dataclasses
 import time
 from collections.abc import Callable, Mapping
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, landmark_errors, shape_warnings
 from toongeo.caricature import caricature_rig
 from toongeo.caricature.align_caricature import align_caricature
@@ -32,6 +33,7 @@ from toongeo.pipeline import (
     photometric_fit,
     snap_eyes,
 )
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser
@@ -58,6 +60,7 @@ def make_avatar(
     method: Literal["cartoon", "caricature"] = "cartoon",
     rig: Literal["transfer", "caricature"] = "transfer",
     texture_size: int = 1024,
+    scheme: Any = "ibug68",
     progress: Callable[[str], None] | None = None,
 ) -> Avatar:
     """A textured, rigged, animatable 3D face from one picture (the whole way of Pan et al. 2024).
@@ -68,7 +71,8 @@ def make_avatar(
     landmarks : (68, 2) float, px
         iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
     model : MorphableModel, optional
-        :func:`toongeo.default_model` unless another is given.
+        :func:`toongeo.default_model` unless another is given. What it does not have (eyeballs, teeth, expressions,
+        texture coordinates ...) the avatar does without; ``report.warnings`` says what.
     parser : FaceParser, optional
         Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
     snap : bool
@@ -90,6 +94,9 @@ def make_avatar(
         from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
     texture_size : int
         Side of the texture atlas in texels.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}, or a table
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`. With a table of points on the model (as of
+        :class:`toongeo.FitOptions`) the face is fitted to these, and then stands for its 68 landmarks.
     progress : callable, optional
         Called with the name of each stage before it starts: one of ``STAGES``.
 
@@ -114,7 +121,12 @@ def make_avatar(
 
     clock.start("fit")
     model = model or default_model()
-    fit = fit_3dmm(img, landmarks, model=model)
+    if isinstance(scheme, str):
+        landmarks = ibug_landmarks(landmarks, scheme)
+        fit = fit_3dmm(img, landmarks, model=model)
+    else:
+        fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
+        landmarks = fit.project(fit.vertices[fit.landmark_vertices])
     clock.start("parse")
     parse = parse_face(img, landmarks, fit, parser=parser)
     if snap:
@@ -145,7 +157,7 @@ def make_avatar(
         aligned=landmark_errors(face, landmarks),
         quality=quality,
         seconds=clock.stop(),
-        warnings=(*fit.report.warnings, *shape_warnings(face, eyes, quality)),
+        warnings=(*fit.report.warnings, *missing_parts(model), *shape_warnings(face, eyes, quality)),
     )
     return Avatar(fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report)
 

@@ -62,7 +62,7 @@ def shape_warnings(face: AlignedFace, eyes: Eyes, quality: MeshQuality) -> list[
     warnings = []
     if quality.intersecting_fraction > _FEW_INTERSECTIONS:
         warnings.append(f"{100 * quality.intersecting_fraction:.1f} % of the face's triangles intersect others")
-    for side, name in enumerate(SIDES):
+    for side, name in enumerate(SIDES[: len(eyes.templates)]):
         skin = face.region("skin") & ~face.region(f"eye_{name}")
         inside = np.linalg.norm(face.vertices[skin] - eyes.centres[side], axis=1) < eyes.radii[side]
         if inside.any():

@@ -12,7 +12,7 @@ import numpy as np
 
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.export_targets import PLAYER_MESHES, PLAYER_ROOT, Names, export_targets, renamed_scene
-from toongeo.avatar.scene import avatar_scene, demo_clip, weight_clip
+from toongeo.avatar.scene import avatar_scene, demo_clip, own_shapes, weight_clip
 from toongeo.avatar.stages import AvatarStages
 from toongeo.avatar.state import encode_state
 from toongeo.io import (
@@ -113,6 +113,8 @@ def _write_vrm(
     texture: _Texture = "png",
     meta: VrmMeta | None = None,
 ) -> None:
+    if not avatar.eyes.templates:
+        raise ValueError("avatar: expected one with eyeballs for .vrm, whose bones turn them, got none from its model")
     scene = avatar_scene(avatar, crop=crop, textured=_check_texture(texture) is not None)
     # Bones turn the eyes, which therefore need no targets; the lids that follow are the head's.
     still = (replace(m, targets=None, target_names=()) if m.name.startswith("eye_") else m for m in scene.meshes)
@@ -121,7 +123,7 @@ def _write_vrm(
     write_vrm(
         path,
         Scene(tuple(still)),
-        {**SCHEMES["vrm"], **SCHEMES["arkit"]},
+        _shown({**SCHEMES["vrm"], **SCHEMES["arkit"]}, avatar.rig),
         meta=meta,
         gaze_degrees=(sideways, updown),
         normal_deltas=normals,
@@ -217,13 +219,22 @@ def _write_html(
     )
     tolerance = _COARSE_MM if quantize else _EXACT_MM
     glb = encode_glb(scene, tolerance_mm=tolerance, quantize=quantize, picture=texture or "png")
-    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets())
+    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets(avatar.rig))
     atomic_write({path: page.encode("utf-8")})
 
 
-def page_presets() -> dict[str, _Weights]:
-    """Whole expressions for the buttons of a page: no shapes of speech, no parts of faces."""
-    return {name: dict(weights) for name, weights in PRESETS.items() if weights and not name.startswith("viseme_")}
+def page_presets(rig: Rig | None = None) -> dict[str, _Weights]:
+    """Whole expressions that a rig can show, for the buttons of a page: no shapes of speech, no parts of faces."""
+    whole: dict[str, _Weights] = {
+        name: dict(weights) for name, weights in PRESETS.items() if weights and not name.startswith("viseme_")
+    }
+    return whole if rig is None else _shown(whole, rig)
+
+
+def _shown(expressions: Mapping[str, _Weights], rig: Rig) -> dict[str, _Weights]:
+    """Those among them of which a rig has all parts."""
+    known = {name for name, _ in own_shapes(rig)}
+    return {name: dict(weights) for name, weights in expressions.items() if known.issuperset(weights)}
 
 
 _WRITERS: dict[str, Callable[..., None]] = {

@@ -11,7 +11,7 @@ from toongeo.avatar.crop_faces import Crop, crop_faces
 from toongeo.avatar.stages import AvatarStages
 from toongeo.geometry import vertex_normals
 from toongeo.io import Scene, SceneAnimation, SceneMesh
-from toongeo.model import MorphableModel
+from toongeo.model import MorphableModel, atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES, gaze_names
 from toongeo.model.anatomy.parts import SIDES, TEETH
 from toongeo.pipeline import Eyes, Rig
@@ -93,8 +93,7 @@ def head_parts(model: MorphableModel, crop: Crop = "head") -> dict[str, np.ndarr
     kept = crop_faces(model, crop)
     rest, parts = np.ones(len(kept), bool), {}
     for name, regions in _PARTS.items():
-        masks = [model.regions[region] for region in regions if region in model.regions]
-        inside = np.any(masks, axis=0)[model.faces[kept]].all(axis=1) if masks else ~rest & False
+        inside = np.any([model.region(region) for region in regions], axis=0)[model.faces[kept]].all(axis=1)
         parts[name] = kept[inside]
         rest &= ~inside
     return {name: faces for name, faces in {"head": kept[rest], **parts}.items() if len(faces)}
@@ -135,14 +134,15 @@ def weight_clip(rig: Rig, times: object, weights: object) -> SceneAnimation:
 def _part(avatar: AvatarStages, name: str, kept: np.ndarray, shapes: Shapes, crop: Crop) -> SceneMesh:
     rig, model = avatar.rig, avatar.face.model
     used, faces = np.unique(model.faces[kept], return_inverse=True)
-    used_uv, uv_faces = np.unique(model.uv_faces[kept], return_inverse=True)
+    atlas = atlas_coordinates(model)
+    used_uv, uv_faces = np.unique(atlas.uv_faces[kept], return_inverse=True)
     targets = np.stack([_delta(rig, weights, used) for _, weights in shapes])
     moving = np.full(len(shapes), True) if name == "head" else np.abs(targets).max(axis=(1, 2)) > _STILL_MM
     return SceneMesh(
         name=name,
         vertices=rig.neutral[used],
         faces=faces.reshape(-1, 3),
-        uv=model.uv[used_uv],
+        uv=atlas.uv[used_uv],
         uv_faces=uv_faces.reshape(-1, 3),
         # A cut-out face is shaded like the whole head: its own normals would turn at the cut.
         normals=vertex_normals(rig.neutral, model.faces)[used] if crop == "face" else None,
@@ -153,12 +153,13 @@ def _part(avatar: AvatarStages, name: str, kept: np.ndarray, shapes: Shapes, cro
 
 
 def _delta(rig: Rig, weights: Mapping[str, float], used: np.ndarray) -> np.ndarray:
-    """What the weights add to the used vertices, mm."""
+    """What the weights add to the used vertices, mm; expressions that the rig does not have add nothing."""
     delta = np.zeros((len(used), 3), np.float32)
     for name, weight in weights.items():
         gaze = name in GAZE_NAMES
-        shape = rig.gaze[GAZE_NAMES.index(name)] if gaze else rig.deltas[rig.names.index(name)]
-        delta += np.float32(weight) * shape[used]
+        if gaze or name in rig.names:
+            shape = rig.gaze[GAZE_NAMES.index(name)] if gaze else rig.deltas[rig.names.index(name)]
+            delta += np.float32(weight) * shape[used]
     return delta
 
 

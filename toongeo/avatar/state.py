@@ -15,7 +15,7 @@ import numpy as np
 from toongeo.avatar.report import AvatarReport
 from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
-from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
+from toongeo.pipeline import AlignedFace, AlignReport, Eyes, FaceFit, Rig, RigReport
 from toongeo.pipeline.fit.face_fit import FitReport, PhotometricReport
 from toongeo.protocols import FaceParse
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
@@ -26,6 +26,7 @@ _TIMES = "seconds"  # what a run took is not kept: one input gives one file, bit
 _CLASSES: dict[str, Any] = {
     kind.__name__: kind
     for kind in (
+        AlignReport,
         AlignedFace,
         AvatarReport,
         EyeballTemplate,
@@ -37,6 +38,7 @@ _CLASSES: dict[str, Any] = {
         PerspectiveCamera,
         PhotometricReport,
         Rig,
+        RigReport,
         ScaledOrthographicCamera,
     )
 }

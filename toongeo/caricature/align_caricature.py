@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from toongeo.caricature.caricature_fit import CaricatureFit
 from toongeo.caricature.fit_caricature import fit_caricature
-from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.align.align_face import AlignedFace, AlignReport
 from toongeo.pipeline.fit.face_fit import FaceFit
 
 __all__ = ["align_caricature", "aligned"]
@@ -35,5 +35,5 @@ def align_caricature(fit: FaceFit, landmarks: NDArray[np.float64]) -> AlignedFac
 
 def aligned(face: CaricatureFit) -> AlignedFace:
     """A caricature with the report of an aligned face, for rig, eyes and texture."""
-    report = {"rms_px": face.report.rms_px, "max_px": face.report.max_px, "seconds": face.report.seconds}
+    report = AlignReport(face.report.rms_px, face.report.max_px, face.report.seconds)
     return AlignedFace(face.vertices, face.camera, face.landmark_vertices, face.model, face.fit, report)

@@ -7,7 +7,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.geometry import validate_mesh, vertex_components
+from toongeo.geometry import MeshLike, validate_mesh, vertex_components
 from toongeo.geometry.operators.factor import factor_spd, solve
 
 __all__ = ["caricature_surface"]
@@ -15,7 +15,7 @@ __all__ = ["caricature_surface"]
 _RANGE = (0.02, 0.98)  # quantiles of the curvature that count; a single vertex can have any angle defect
 
 
-def caricature_surface(V: ArrayLike, F: ArrayLike, gamma: float) -> NDArray[np.float64]:
+def caricature_surface(V: MeshLike, F: ArrayLike | None, gamma: float) -> NDArray[np.float64]:
     """Caricature of a surface by its own curvature (Sela et al. 2015).
 
     The gradients of the three coordinates are multiplied by ``|K|^gamma``, K the Gaussian curvature, and integrated
@@ -25,9 +25,9 @@ def caricature_surface(V: ArrayLike, F: ArrayLike, gamma: float) -> NDArray[np.f
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Vertices, any unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles.
     gamma : float
         0 changes nothing, 0.1 to 0.3 exaggerate, negative values flatten.

@@ -28,6 +28,7 @@ from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.protocols import HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
@@ -43,6 +44,7 @@ def fit_caricature(
     iterations: int = 4,
     start: CaricatureFit | FaceFit | None = None,
     options: CaricatureOptions | None = None,
+    scheme: str = "ibug68",
 ) -> CaricatureFit:
     """A face as exaggerated as its landmarks ask for (Wu et al. 2018, Algorithm 1).
 
@@ -77,6 +79,8 @@ def fit_caricature(
         space does not explain. The same landmarks give nearly the same face, and with one iteration a new expression
         takes a third of a second. Of an ordinary face: begin with this one instead of the `fit_3dmm` of the landmarks.
     options : CaricatureOptions, optional
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -107,7 +111,7 @@ def fit_caricature(
     started = time.perf_counter()
     if img is not None:
         check_image(img)
-    pixels = np.array(landmarks, np.float64)
+    pixels = ibug_landmarks(landmarks, scheme)
     warnings = check_landmarks(pixels, None if img is None else img.shape)
     if not (np.isfinite(weight) and weight > 0):
         raise ValueError(f"weight: expected a finite number > 0, got {weight}")

@@ -1,4 +1,7 @@
-"""A camera that does not take an exaggerated chin or forehead for a nod."""
+"""A camera that does not take an exaggerated chin or forehead for a nod.
+
+Constants were chosen on the seven examples and eight caricatures (``toongeo bench caricature``).
+"""
 
 from __future__ import annotations
 

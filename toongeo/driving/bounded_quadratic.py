@@ -6,7 +6,7 @@ from toongeo.arrays import Floats
 
 __all__ = ["bounded_quadratic"]
 
-_ROUNDS = 100
+_ROUNDS = 100  # a variable, at most: a guard against endless loops
 
 
 def bounded_quadratic(H: Floats, g: Floats, low: Floats, high: Floats, x: Floats) -> Floats:

@@ -1,4 +1,7 @@
-"""Expression weights from the landmarks of another face."""
+"""Expression weights from the landmarks of another face.
+
+Constants were judged on the heads of the seven examples (``benchmarks/driving.py``).
+"""
 
 from __future__ import annotations
 
@@ -38,6 +41,8 @@ class LandmarkDriver:
     performer : Avatar, LandmarkRig, (68, 2) px landmarks of a neutral frame, or None
         Whose landmarks will be seen. The better it is known, the better the weights: an avatar of the performer knows
         most; of a neutral frame a face is fitted; with None the face is found from the sequence itself.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What all landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Examples
     --------
@@ -55,14 +60,15 @@ class LandmarkDriver:
 
     names = EXPRESSIONS
 
-    def __init__(self, performer: Avatar | LandmarkRig | ArrayLike | None = None) -> None:
+    def __init__(self, performer: Avatar | LandmarkRig | ArrayLike | None = None, *, scheme: str = "ibug68") -> None:
+        self._scheme = scheme
         self._rig: LandmarkRig | None
         if performer is None or isinstance(performer, LandmarkRig):
             self._rig = performer
         elif isinstance(rig := getattr(performer, "rig", None), Rig):
             self._rig = LandmarkRig.of_rig(rig, performer.face.landmark_vertices)  # type: ignore[union-attr]
         else:
-            self._rig = LandmarkRig.of_neutral(landmark_frames(performer, "performer")[0])
+            self._rig = LandmarkRig.of_neutral(landmark_frames(performer, "performer", scheme)[0])
 
     def frames(self, recording: ArrayLike, fps: float = 30.0) -> Floats:
         """Weights (f, 54) in [0, 1] of the expressions ``names`` for a whole sequence.
@@ -83,7 +89,7 @@ class LandmarkDriver:
         ValueError
             If the shape is another, the rate is not positive, or no frame has enough landmarks.
         """
-        sequence = landmark_frames(recording)
+        sequence = landmark_frames(recording, scheme=self._scheme)
         if not (np.isfinite(fps) and fps > 0):
             raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
         with one_thread():
@@ -109,7 +115,7 @@ class LandmarkDriver:
         """
         if self._rig is None:
             raise ValueError("performer: expected an avatar or a neutral frame for live driving, got None")
-        return LiveLandmarks(self._rig)
+        return LiveLandmarks(self._rig, self._scheme)
 
 
 class LiveLandmarks:
@@ -118,8 +124,8 @@ class LiveLandmarks:
     Smooths by what has come so far, so it follows a little later than :meth:`LandmarkDriver.frames`.
     """
 
-    def __init__(self, rig: LandmarkRig) -> None:
-        self._rig = rig
+    def __init__(self, rig: LandmarkRig, scheme: str = "ibug68") -> None:
+        self._rig, self._scheme = rig, scheme
         self._weights = [np.zeros(len(rig.names)), np.zeros(len(rig.names))]  # of the frame as it is, and smoothed
         self._filter = OneEuroFilter(_FIRST_NOISE * rig.width)
         self._errors: deque[Floats] = deque(maxlen=_REMEMBERED)
@@ -134,7 +140,7 @@ class LiveLandmarks:
         ValueError
             If the landmarks have another shape or are infinite.
         """
-        rig, pixels = self._rig, landmark_frames(landmarks)[0]
+        rig, pixels = self._rig, landmark_frames(landmarks, "landmarks", self._scheme)[0]
         if np.isfinite(pixels).all(axis=1).sum() >= FEWEST:
             with one_thread():
                 pose = landmark_pose(rig, pixels, self._weights[0], _FIRST_NOISE)

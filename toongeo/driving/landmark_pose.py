@@ -1,4 +1,7 @@
-"""Pose and expression of a known face from one frame of landmarks."""
+"""Pose and expression of a known face from one frame of landmarks.
+
+Constants were judged on the heads of the seven examples (``benchmarks/driving.py``).
+"""
 
 from __future__ import annotations
 
@@ -20,8 +23,8 @@ _SPARSITY = 1.0  # how much a weight of 1 costs beside: few expressions explain 
 _OUTLIER = 0.01  # of the face's width: an error that counts a quarter
 _POSE = 6  # rotation vector, log scale, translation
 _FLIP = np.array([1.0, -1.0])
-_STEPS = 12
-_SETTLED = 1e-4
+_STEPS = 12  # of Gauss-Newton at most
+_SETTLED = 1e-4  # change of a weight in a step; what is smaller is not seen
 _PLAIN_STEPS = 2  # before errors are told from expressions
 
 
@@ -82,11 +85,11 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
     shape = rig.neutral + np.tensordot(weights, rig.deltas, 1)
     pose = LandmarkPose(weights, *scaled_orthographic_pose(shape[there], pixels[there]))
     for step in range(_STEPS):
-        trust = there.astype(np.float64)
+        robust_weight = there.astype(np.float64)
         if step >= _PLAIN_STEPS:
             square = (np.nan_to_num(pose.errors(pixels, rig)) ** 2).sum(axis=1)
-            trust = there / (1 + square / max(_OUTLIER, 3 * noise) ** 2) ** 2
-        after = _step(rig, pixels, pose, trust, noise)
+            robust_weight = there / (1 + square / max(_OUTLIER, 3 * noise) ** 2) ** 2
+        after = _step(rig, pixels, pose, robust_weight, noise)
         change = np.abs(after.weights - pose.weights).max()
         pose = after
         if change < _SETTLED and step >= _PLAIN_STEPS:
@@ -94,13 +97,13 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
     return pose
 
 
-def _step(rig: LandmarkRig, pixels: Floats, pose: LandmarkPose, trust: Floats, noise: float) -> LandmarkPose:
+def _step(rig: LandmarkRig, pixels: Floats, pose: LandmarkPose, robust_weight: Floats, noise: float) -> LandmarkPose:
     """To the minimum of the loss with the face linear in weights and pose; everything in widths of the face."""
     k = len(rig.names)
-    there = trust > 0
+    there = robust_weight > 0
     J = _jacobian(rig, pose)[there].reshape(-1, k + _POSE)
     e = pose.errors(pixels, rig)[there].ravel()
-    precision = np.repeat(trust[there], 2) / noise**2
+    precision = np.repeat(robust_weight[there], 2) / noise**2
     H = (J.T * precision) @ J
     H[np.diag_indices(k)] += 1 / _SPREAD**2
     H[range(k, k + _POSE), range(k, k + _POSE)] += 1e-9 / noise**2

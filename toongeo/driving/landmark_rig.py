@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo._read_only import read_only
 from toongeo.arrays import Floats
-from toongeo.pipeline import Rig, align_face, build_rig, fit_3dmm, fit_lids
+from toongeo.pipeline import Rig, align_face, build_rig, fit_3dmm, fit_3dmm_together, fit_lids
 
 __all__ = ["LandmarkRig"]
 
@@ -68,7 +68,7 @@ class LandmarkRig:
         there = np.isfinite(sequence).all(axis=2).sum(axis=1)
         whole = np.flatnonzero(there == there.max())
         chosen = whole[np.unique(np.linspace(0, len(whole) - 1, _SEVERAL).round().astype(int))]
-        fit = fit_3dmm([None] * len(chosen), list(sequence[chosen]))[0]
+        fit = fit_3dmm_together([None] * len(chosen), list(sequence[chosen]))[0]
         model, n = fit.model, fit.model.n_named
         vertices = fit.landmark_vertices
         return cls(

@@ -1,6 +1,7 @@
 """The same picture with another expression."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,7 @@ def edit_expression(
     *,
     reference: tuple[np.ndarray | None, np.ndarray] | None = None,
     generator: TextureGenerator | None = None,
+    scheme: Any = "ibug68",
 ) -> np.ndarray:
     """Change the expression of a picture or drawing, and nothing else of it (Chen et al. 2020, section 4.4).
 
@@ -33,6 +35,8 @@ def edit_expression(
         Instead of weights: a normal face whose expression is taken over.
     generator : TextureGenerator, optional
         What makes the new texture; :class:`toongeo.ClassicalTextureGenerator` unless another is given.
+    scheme : str or table
+        What the landmarks are, those of the reference too: see :func:`toongeo.make_avatar`.
 
     Returns
     -------
@@ -47,12 +51,12 @@ def edit_expression(
     """
     if (weights is None) == (reference is None):
         raise ValueError("weights, reference: expected one of them, got " + ("neither" if weights is None else "both"))
-    wanted = weights if reference is None else reference_weights(reference)
-    return ExpressionEditor(img, landmarks, generator=generator).frame(wanted)
+    wanted = weights if reference is None else reference_weights(reference, scheme=scheme)
+    return ExpressionEditor(img, landmarks, generator=generator, scheme=scheme).frame(wanted)
 
 
 def reference_weights(
-    reference: tuple[np.ndarray | None, np.ndarray], model: MorphableModel | None = None
+    reference: tuple[np.ndarray | None, np.ndarray], model: MorphableModel | None = None, *, scheme: Any = "ibug68"
 ) -> dict[str, float]:
     """Named expression weights of a normal face, given as picture (or None) and landmarks.
 
@@ -66,7 +70,7 @@ def reference_weights(
     except (TypeError, ValueError):
         raise ValueError(f"reference: expected a picture and its landmarks, got {type(reference).__name__}") from None
     try:
-        fit = fit_3dmm(img, landmarks, model=model)
+        fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
     except ValueError as error:
         raise ValueError(f"reference: no face could be fitted ({error})") from error
     return fit.expression_weights()

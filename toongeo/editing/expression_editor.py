@@ -3,24 +3,29 @@
 import dataclasses
 import zlib
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from toongeo.avatar.avatar import Avatar, Weights
 from toongeo.avatar.make_avatar import make_avatar
 from toongeo.editing.compose_texture import compose_texture
+from toongeo.editing.texture.new_skin import NewSkin
 from toongeo.editing.texture.picture_mesh import picture_mesh
-from toongeo.editing.texture.picture_warp import Stroke, picture_warp
+from toongeo.editing.texture.picture_warp import picture_warp
 from toongeo.editing.texture_generator import ClassicalTextureGenerator
-from toongeo.io import check_image, landmark_array
+from toongeo.io import check_image
 from toongeo.model.anatomy.gaze import GAZE_NAMES
+from toongeo.model.anatomy.lid_rings import lids_of
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline import AlignedFace, FaceFit, Rig, build_rig, fit_lids, fit_mouth
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.weight_vector import weight_vector
 from toongeo.protocols import TextureGenerator, TextureGeometry
 
 __all__ = ["ExpressionEditor"]
 
+_NEEDS = ("eyes", "uv", "mouth_cavity", "lips", "eyeBlinkLeft", "eyeBlinkRight", *lids_of("left"), *lids_of("right"))
 _TEXTURE_SIZE = 512  # texels
 
 
@@ -40,14 +45,18 @@ class ExpressionEditor:
     avatar : Avatar, optional
         Of this picture, if it has been made already.
     generator : TextureGenerator, optional
-        :class:`ClassicalTextureGenerator` unless another is given.
+        :class:`ClassicalTextureGenerator` unless another is given. Where lids close and lips part the picture gives
+        way to the texture, and lashes are drawn, whoever made it.
     pose : mapping of name to weight, or (46,) array, optional
         The expression that the picture shows, where it is known; ``avatar.rig.pose`` if None.
+    scheme : str or table
+        What the landmarks are: see :func:`toongeo.make_avatar`.
 
     Raises
     ------
     ValueError
-        For pictures and landmarks as :func:`toongeo.make_avatar`; for ``pose`` as :meth:`frame`.
+        For pictures and landmarks as :func:`toongeo.make_avatar`; for ``pose`` as :meth:`frame`; if the avatar's model
+        has no eyeballs, lids, blinks, lips, inside of the mouth or texture coordinates.
     """
 
     def __init__(
@@ -58,19 +67,24 @@ class ExpressionEditor:
         avatar: Avatar | None = None,
         generator: TextureGenerator | None = None,
         pose: Mapping[str, float] | np.ndarray | None = None,
+        scheme: Any = "ibug68",
     ) -> None:
         check_image(img)
-        self.avatar = avatar or make_avatar(img, landmarks, texture_size=_TEXTURE_SIZE)
+        self.avatar = avatar or make_avatar(img, landmarks, texture_size=_TEXTURE_SIZE, scheme=scheme)
         face, rig = self.avatar.face, self.avatar.rig
         if pose is not None:
             rig = _rig_at_rest(face, rig, weight_vector(pose, rig.names))
+        if not face.model.has(*_NEEDS):
+            raise ValueError(f"avatar: expected one whose model has {', '.join(_NEEDS)}, got one without")
         self._rig, self._img, self._checksum = rig, img, _checksum(img)
         self.pose = np.r_[rig.pose if pose is None else weight_vector(pose, rig.names), self.avatar.eyes.pose]
         self._generator = generator or ClassicalTextureGenerator(face.model, rig, self.avatar.texture)
+        self._new_skin = NewSkin(face.model, rig, self.avatar.texture)
         self._mesh = picture_mesh(face, self.avatar.eyes)
-        points = np.where(
-            np.isfinite(landmark_array(landmarks)), landmarks, face.project(face.vertices[face.landmark_vertices])
-        )
+        points = face.project(face.vertices[face.landmark_vertices])
+        if isinstance(scheme, str):
+            given = ibug_landmarks(landmarks, scheme)
+            points = np.where(np.isfinite(given), given, points)
         self._warp = picture_warp(img, points, self._mesh, self.avatar.parse)
 
     @property
@@ -138,13 +152,10 @@ class ExpressionEditor:
         gaze = dict(zip(GAZE_NAMES, beta[len(self.avatar.rig.names) :].tolist(), strict=True))
         moved = np.concatenate([V, *(self.avatar.eyes.looking(side, gaze) for side in range(len(SIDES)))])
         renewed = np.zeros(len(moved), np.float32)
-        strokes: list[Stroke] = []
-        if isinstance(self._generator, ClassicalTextureGenerator):
-            renewed[: len(V)] = self._generator.renewed(geometry)
-            strokes = self._generator.lash_strokes(geometry)
+        renewed[: len(V)] = self._new_skin.renewed(geometry)
         out = self._img.copy()
         drawn = self._warp.redrawn(moved, new, new - texture, renewed)
-        drawn = self._warp.stroked(drawn, moved, strokes)
+        drawn = self._warp.stroked(drawn, moved, self._new_skin.lash_strokes(geometry))
         drawn = np.where(self._warp.freedom[..., None] > 0, drawn, self._warp.picture)
         out[self._warp.box] = np.clip(np.rint(drawn), 0, 255).astype(np.uint8)
         return out

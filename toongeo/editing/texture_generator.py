@@ -1,30 +1,30 @@
-"""What an expression does to the colours of a face, without a network."""
+"""What an expression does to the colours of a face, without a network.
+
+Constants were judged on the seven examples (``benchmarks/editing.py``).
+"""
 
 import cv2
 import numpy as np
 
 from toongeo.editing.attention_map import MAP_SIDE, attention_map
 from toongeo.editing.texture.atlas_raster import AtlasRaster
-from toongeo.editing.texture.lid_skin import LINE, lash_colour, lash_lines, lid_skin, lid_zones
+from toongeo.editing.texture.lid_skin import lash_lines, lid_skin
 from toongeo.editing.texture.mouth_palette import mouth_palette
+from toongeo.editing.texture.new_skin import NewSkin
 from toongeo.editing.texture.openings import lid_closing, lips_parted
-from toongeo.editing.texture.picture_warp import Stroke
 from toongeo.editing.texture.shading_ratio import ShadingRatio
 from toongeo.editing.texture.spread_field import spread_field
 from toongeo.geometry import vertex_normals
 from toongeo.model import MorphableModel
-from toongeo.model.anatomy.lid_rings import lid_rings
-from toongeo.model.anatomy.parts import MOUTH_PARTS, SIDES
 from toongeo.pipeline import Rig
 from toongeo.protocols import TextureGeometry
-from toongeo.render import sample_image, srgb_to_linear, uv_to_px
+from toongeo.render import srgb_to_linear
 
 __all__ = ["ClassicalTextureGenerator"]
 
-_OUTWARD, _INWARD = 0.6, 0.35  # cosine to the front beyond which a lip is its red, and below which it is its inner side
+_OUTWARD = 0.6  # cosine to the front beyond which a lip is its red
 _PLAIN = 60.0  # of 255: a colour that differs more from the skin's is a line's and says nothing about the light
 _GRAIN, _MOST_GRAIN = 0.006, 24.0  # s.d. of the atlas's side; of 255
-_FAINT = 0.02  # less of a line is not seen
 _INNER_LIP = 0.8  # of the lightness of the lips
 
 
@@ -53,34 +53,25 @@ class ClassicalTextureGenerator:
         _check_texture(texture)
         self.model, self.size = model, len(texture)
         V = rig.neutral
-        normals = vertex_normals(V, model.faces)
-        colours = _vertex_colours(model, texture)
-        eyes = model.region("eye_left") | model.region("eye_right")
-        brows = model.region("brow_left") | model.region("brow_right")
-        skin = model.region("face") & ~model.region("lips") & ~eyes & ~brows & (normals[:, 2] > 0)
-        lip = model.region("lips") & (normals[:, 2] > _OUTWARD)
-        linear = srgb_to_linear((colours / 255).astype(np.float32)).mean(1)
-        plain = skin & (np.abs(colours - np.median(colours[skin], axis=0)).max(1) < _PLAIN)
+        new = self._new = NewSkin(model, rig, texture)
+        lip = model.region("lips") & (vertex_normals(V, model.faces)[:, 2] > _OUTWARD)
+        linear = srgb_to_linear((new.colours / 255).astype(np.float32)).mean(1)
+        plain = new.skin & (np.abs(new.colours - np.median(new.colours[new.skin], axis=0)).max(1) < _PLAIN)
         self._ratio = ShadingRatio(linear, V, model.faces, plain)
-        self._zones = lid_zones(model, rig)
-        clean = lid_skin(model, colours, self._zones)
-        self._inner = np.any([model.region(name) for name in MOUTH_PARTS], axis=0)
-        inner_lip = model.region("lips") & (normals[:, 2] < _INWARD) & ~self._inner
+        clean = lid_skin(model, new.colours, new.zones)
         for part in (model.region("lip_upper"), model.region("lip_lower")):
             own = lip & part if (lip & part).any() else lip
-            clean[inner_lip & part] = _INNER_LIP * np.median(colours[own], axis=0)
-        clean = mouth_palette(model, V, clean, lip, skin)
-        self._fresh = (self._inner | inner_lip).astype(np.float32)
+            clean[new.inner_lip & part] = _INNER_LIP * np.median(new.colours[own], axis=0)
+        clean = mouth_palette(model, V, clean, lip, new.skin)
         raster = AtlasRaster(model.faces, model.uv, model.uv_faces, self.size)
         covered = np.zeros(self.size**2, bool)
         covered[raster.texels] = True
         self._clean = spread_field(raster.image(clean), covered.reshape(self.size, self.size))
-        masks = raster.image(np.column_stack([*self._zones, self._fresh]))
+        masks = raster.image(np.column_stack([*new.zones, new.fresh]))
         masks = np.moveaxis(spread_field(masks, covered.reshape(self.size, self.size)), 2, 0)
         _add_grain(self._clean, texture, masks[:2])
         self._zone_texels, self._fresh_texels = [_boxed(mask) for mask in masks[:2]], _boxed(masks[2])
         self._lashes = [_boxed(line) for line in lash_lines(model, V, self.size)]
-        self._lash_colour = lash_colour(model, colours, skin).astype(np.float32)
         self._coarse = AtlasRaster(model.faces, model.uv, model.uv_faces, min(self.size, MAP_SIDE))
 
     def __call__(
@@ -100,7 +91,7 @@ class ClassicalTextureGenerator:
             raise ValueError(f"texture: expected {self.size} x {self.size} texels, got {texture.shape}")
         closing = lid_closing(self.model, geometry.source, geometry.target)
         parted = lips_parted(self.model, geometry.target)
-        attention = attention_map(geometry, self.size, extra=self._extra(closing, parted), raster=self._coarse)
+        attention = attention_map(geometry, self.size, extra=self._new.shown(closing, parted), raster=self._coarse)
         ratio = self._coarse.image(self._ratio(geometry.source, geometry.target)[:, None], empty=1.0)
         ratio = cv2.resize(cv2.GaussianBlur(ratio, (0, 0), 1.0), (self.size, self.size), interpolation=cv2.INTER_LINEAR)
         ratio = cv2.merge([ratio, ratio, ratio])
@@ -109,36 +100,8 @@ class ClassicalTextureGenerator:
             # Folded lids have normals that say little, so what is new is lit as it was matched.
             colour[box] += strength * share * (self._clean[box] - colour[box])
         for strength, (box, cover) in zip(closing, self._lashes, strict=True):
-            colour[box] += strength * cover * (self._lash_colour - colour[box])
+            colour[box] += strength * cover * (self._new.lash_colour - colour[box])
         return np.clip(colour, 0, 255, out=colour), attention
-
-    def renewed(self, geometry: TextureGeometry) -> np.ndarray:
-        """How far (n,) in [0, 1] a vertex shows what the source does not: skin of a closing lid, inner lips."""
-        closing = lid_closing(self.model, geometry.source, geometry.target)
-        parting = lips_parted(self.model, geometry.target) * (1 - lips_parted(self.model, geometry.source))
-        # Of teeth and tongue the picture may show some already.
-        return np.where(self._inner, 0, self._extra(closing, parting)).astype(np.float32)
-
-    def lash_strokes(self, geometry: TextureGeometry) -> list[Stroke]:
-        """The line along each lid that closes, for pictures, where it should be as sharp as the drawing's own."""
-        closing = lid_closing(self.model, geometry.source, geometry.target)
-        return [
-            Stroke(lid_rings(self.model, name).upper[2], self._lash_colour, LINE, float(strength))
-            for name, strength in zip(SIDES, closing, strict=True)
-            if strength > _FAINT
-        ]
-
-    def _extra(self, closing: np.ndarray, parted: float) -> np.ndarray:
-        lids = np.maximum(closing[0] * self._zones[0], closing[1] * self._zones[1])
-        return np.asarray(np.maximum(lids, parted * self._fresh), np.float32)
-
-
-def _vertex_colours(model: MorphableModel, texture: np.ndarray) -> np.ndarray:
-    """Colours (n, 3) float32, 0-255, that a texture has at the vertices."""
-    colours = np.zeros((len(model.mean), 3), np.float32)
-    at_corners = sample_image(texture, uv_to_px(model.uv, len(texture), len(texture)))
-    colours[model.faces] = at_corners[model.uv_faces]
-    return colours
 
 
 def _add_grain(clean: np.ndarray, texture: np.ndarray, zones: np.ndarray) -> None:

@@ -19,4 +19,5 @@ from toongeo.geometry.rotations.polar_decomposition import polar_decomposition a
 from toongeo.geometry.rotations.rotation_exp import rotation_exp as rotation_exp
 from toongeo.geometry.rotations.rotation_log import rotation_log as rotation_log
 from toongeo.geometry.self_intersections import self_intersections as self_intersections
+from toongeo.geometry.validate_mesh import MeshLike as MeshLike
 from toongeo.geometry.validate_mesh import validate_mesh as validate_mesh

@@ -13,16 +13,16 @@ from toongeo.geometry.operators.components import components
 from toongeo.geometry.operators.factor import factor_spd, solve
 from toongeo.geometry.rotations.rigid_rotation import rigid_rotation
 from toongeo.geometry.source_motion import SourceMotion, source_motion
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, validate_like, validate_mesh
 
 __all__ = ["DeformationTransfer", "deformation_transfer"]
 
 
 def deformation_transfer(
-    V_source: ArrayLike,
-    V_deformed: ArrayLike,
-    F: ArrayLike,
-    V_target: ArrayLike,
+    V_source: MeshLike,
+    V_deformed: MeshLike,
+    F: ArrayLike | None,
+    V_target: MeshLike,
     *,
     pinned: ArrayLike | None = None,
     align: bool = False,
@@ -31,13 +31,13 @@ def deformation_transfer(
 
     Parameters
     ----------
-    V_source : (n, 3) float
+    V_source : (n, 3) float, or trimesh.Trimesh
         The source at rest.
-    V_deformed : (n, 3) or (k, n, 3) float
+    V_deformed : (n, 3) or (k, n, 3) float, or trimesh.Trimesh
         The source deformed, once or k times.
-    F : (m, 3) int
+    F : (m, 3) int, or None if `V_source` is a Trimesh
         Triangles of all of them.
-    V_target : (n, 3) float
+    V_target : (n, 3) float, or trimesh.Trimesh
         The target at rest.
     pinned : (p,) int, optional
         Vertices held where the target has them; see `DeformationTransfer`.
@@ -83,11 +83,11 @@ class DeformationTransfer:
 
     Parameters
     ----------
-    V_source : (n, 3) float
+    V_source : (n, 3) float, or trimesh.Trimesh
         The source at rest, without degenerate triangles.
-    F : (m, 3) int
+    F : (m, 3) int, or None if `V_source` is a Trimesh
         Triangles of source and target.
-    V_target : (n, 3) float
+    V_target : (n, 3) float, or trimesh.Trimesh
         The target at rest, without degenerate triangles: they have no gradient.
     pinned : (p,) int, optional
         Vertices held exactly where the target has them, in every transfer.
@@ -101,7 +101,7 @@ class DeformationTransfer:
     Raises
     ------
     ValueError
-        On malformed or degenerate meshes, different vertex counts, or pins out of range.
+        On malformed or degenerate meshes, different vertex counts or triangles, or pins out of range.
 
     References
     ----------
@@ -118,9 +118,9 @@ class DeformationTransfer:
 
     def __init__(
         self,
-        V_source: ArrayLike,
-        F: ArrayLike,
-        V_target: ArrayLike,
+        V_source: MeshLike,
+        F: ArrayLike | None,
+        V_target: MeshLike,
         *,
         pinned: ArrayLike | None = None,
         align: bool = False,
@@ -129,6 +129,7 @@ class DeformationTransfer:
         if weights not in ("uniform", "area"):
             raise ValueError(f"weights: expected 'uniform' or 'area', got {weights!r}")
         self._source, faces = validate_mesh(V_source, F, names=("V_source", "F"), nondegenerate=True)
+        V_target = validate_like(V_target, faces, name="V_target", like="V_source")
         self._target, faces = validate_mesh(V_target, faces, names=("V_target", "F"), nondegenerate=True)
         n = len(self._source)
         if len(self._target) != n:
@@ -150,12 +151,12 @@ class DeformationTransfer:
         self._from_vertices, self._from_normals = from_vertices[self._free], from_normals[self._free]
         self._factor = factor_spd(stiffness[self._free][:, self._free]) if len(self._free) else None
 
-    def transfer(self, V_deformed: ArrayLike) -> NDArray[np.float64]:
+    def transfer(self, V_deformed: MeshLike) -> NDArray[np.float64]:
         """Give the target the deformations of the source.
 
         Parameters
         ----------
-        V_deformed : (n, 3) or (k, n, 3) float
+        V_deformed : (n, 3) or (k, n, 3) float, or trimesh.Trimesh
             The source deformed. Triangles may collapse; the source itself gives the target, exactly.
 
         Returns
@@ -168,7 +169,7 @@ class DeformationTransfer:
         ValueError
             If the shape does not fit or a coordinate is not finite.
         """
-        shapes = np.asarray(V_deformed)
+        shapes = np.asarray(validate_like(V_deformed, self._corners.T, name="V_deformed", like="V_source"))
         n = len(self._source)
         if shapes.ndim not in (2, 3) or shapes.shape[-2:] != (n, 3) or shapes.dtype.kind not in "fiu":
             raise ValueError(

@@ -18,13 +18,14 @@ from toongeo.geometry.deformation.anchored_mesh import (
 )
 from toongeo.geometry.deformation.loose_parts import follow
 from toongeo.geometry.operators.factor import factor_spd, solve
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
 
 __all__ = ["laplacian_align"]
 
 
 def laplacian_align(
-    V: ArrayLike,
-    F: ArrayLike,
+    V: MeshLike,
+    F: ArrayLike | None,
     anchors: ArrayLike,
     targets: ArrayLike,
     *,
@@ -43,9 +44,9 @@ def laplacian_align(
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Rest vertices, any unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles; degenerate ones are allowed.
     anchors : (k,) int
         Vertex indices. An index may come twice if its targets agree.
@@ -82,6 +83,7 @@ def laplacian_align(
     array([1., 0., 1.])
     """
     rotations = checked_rotations(rotations)
+    V, F = validate_mesh(V, F)
     mesh = anchored_mesh(V, F, anchors, weight, laplacian, fixed, loose)
     targets = checked_targets(targets, len(mesh.given))
     pull, weights = mesh.pull(targets, mesh.V)

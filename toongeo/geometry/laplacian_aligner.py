@@ -18,7 +18,7 @@ from toongeo.geometry.deformation.anchored_mesh import (
 from toongeo.geometry.deformation.loose_parts import follow
 from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.operators.factor import factor_spd, solve
-from toongeo.geometry.validate_mesh import validate_vertices
+from toongeo.geometry.validate_mesh import MeshLike, validate_vertices
 
 __all__ = ["LaplacianAligner"]
 
@@ -37,9 +37,9 @@ class LaplacianAligner:
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Rest vertices, any unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles; degenerate ones are allowed.
     anchors : (k,) int
         Vertex indices. An index may come twice; its targets must then agree, and its weights add.
@@ -82,8 +82,8 @@ class LaplacianAligner:
 
     def __init__(
         self,
-        V: ArrayLike,
-        F: ArrayLike,
+        V: MeshLike,
+        F: ArrayLike | None,
         anchors: ArrayLike,
         *,
         weight: float | ArrayLike = DEFAULT_WEIGHT,

@@ -15,12 +15,12 @@ from toongeo.geometry.landmark_matrix import landmark_matrix
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.geometry.registration.thin_shell import ThinShell
 from toongeo.geometry.rotations.similarity import similarity
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
 
 __all__ = ["RegisteredMesh", "nonrigid_register"]
 
-_STIFFNESS = (0.3, 0.03, 0.003, 0.0003)
-_ITERATIONS = 4
+_STIFFNESS = (0.3, 0.03, 0.003, 0.0003)  # from a plate that hardly bends to one that follows; a decade a stage
+_ITERATIONS = 4  # of closest points a stage
 _MATCHED = 0.1  # units: a partner farther away in the end is none
 _CONVERGED = 1e-3  # units: mean step of the last iteration
 
@@ -70,10 +70,10 @@ class RegisteredMesh:
 
 
 def nonrigid_register(
-    V_source: ArrayLike,
-    F_source: ArrayLike,
-    V_target: ArrayLike,
-    F_target: ArrayLike,
+    V_source: MeshLike,
+    F_source: ArrayLike | None,
+    V_target: MeshLike,
+    F_target: ArrayLike | None,
     source_landmarks: ArrayLike,
     target_landmarks: ArrayLike,
     *,
@@ -91,11 +91,11 @@ def nonrigid_register(
 
     Parameters
     ----------
-    V_source : (n, 3) float
-    F_source : (m, 3) int
-    V_target : (p, 3) float
+    V_source : (n, 3) float, or trimesh.Trimesh
+    F_source : (m, 3) int, or None with a Trimesh
+    V_target : (p, 3) float, or trimesh.Trimesh
         Any unit, any pose.
-    F_target : (q, 3) int
+    F_target : (q, 3) int, or None with a Trimesh
         Any topology, oriented like the source's.
     source_landmarks, target_landmarks : (k,) int or (k, 3) float
         Vertices, or points on or near the surface; row i of one belongs to row i of the other. A row with NaN is

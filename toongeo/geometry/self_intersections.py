@@ -7,12 +7,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry.mesh_checks.box_pairs import box_pairs
 from toongeo.geometry.mesh_checks.triangle_pairs import triangles_intersect
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
 
 __all__ = ["self_intersections"]
 
 
-def self_intersections(V: ArrayLike, F: ArrayLike) -> NDArray[np.int64]:
+def self_intersections(V: MeshLike, F: ArrayLike | None) -> NDArray[np.int64]:
     """Find all pairs of triangles of a mesh that intersect without being neighbours along an edge.
 
     Two triangles without a common vertex intersect if they have a point in common, contact included
@@ -22,9 +22,9 @@ def self_intersections(V: ArrayLike, F: ArrayLike) -> NDArray[np.int64]:
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Vertices, any unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles; degenerate ones are allowed.
 
     Returns

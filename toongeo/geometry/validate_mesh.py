@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+import sys
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-__all__ = ["degenerate_triangles", "validate_faces", "validate_mesh", "validate_vertices"]
+import igl
+import numpy as np
+from numpy.typing import ArrayLike
+
+from toongeo.arrays import Floats, Integers, Mask
+
+if TYPE_CHECKING:
+    import trimesh
+
+__all__ = ["MeshLike", "degenerate_triangles", "validate_faces", "validate_like", "validate_mesh", "validate_vertices"]
+
+MeshLike: TypeAlias = "ArrayLike | trimesh.Trimesh"  # vertices, or a mesh that stands for them and its triangles
 
 # Twice the area over the longest edge squared: the sine of the smallest angle, about. Below it, one rounding
 # error decides the normal.
@@ -13,15 +24,17 @@ _DEGENERATE = 1e-12
 
 
 def validate_mesh(
-    V: ArrayLike, F: ArrayLike, *, names: tuple[str, str] = ("V", "F"), nondegenerate: bool = False
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    V: MeshLike, F: ArrayLike | None = None, *, names: tuple[str, str] = ("V", "F"), nondegenerate: bool = False
+) -> tuple[Floats, Integers]:
     """Check a triangle mesh and give it back as float64 and int64, C-contiguous.
+
+    Every function that takes a mesh comes by here, and so takes either form of it.
 
     Parameters
     ----------
-    V : (n, 3) float
-        Vertices, any unit.
-    F : (m, 3) int
+    V : (n, 3) float, or trimesh.Trimesh
+        Vertices, any unit; or vertices and triangles in one, as they are.
+    F : (m, 3) int, or None with a Trimesh
         Triangles, 0-based, m >= 1. Vertices without a triangle are allowed.
     names
         What to call the two arrays in messages.
@@ -49,8 +62,14 @@ def validate_mesh(
     ...
     ValueError: F: expected indices in 0..2, got 3 in triangle 0
     """
-    V = validate_vertices(V, name=names[0])
-    F = validate_faces(F, len(V), name=names[1])
+    mesh = _trimesh(V)
+    if mesh is not None and F is not None:
+        raise ValueError(f"{names[1]}: expected None, since {names[0]} is a Trimesh with triangles of its own")
+    if mesh is None and F is None:
+        got = type(V).__name__
+        raise ValueError(f"{names[1]}: expected triangles, or a trimesh.Trimesh as {names[0]}, got None and {got}")
+    V = validate_vertices(V if mesh is None else mesh.vertices, name=names[0])
+    F = validate_faces(F if mesh is None else mesh.faces, len(V), name=names[1])
     if nondegenerate:
         bad = np.flatnonzero(degenerate_triangles(V, F))
         if len(bad):
@@ -61,7 +80,29 @@ def validate_mesh(
     return V, F
 
 
-def validate_vertices(V: ArrayLike, *, name: str = "V") -> NDArray[np.float64]:
+def validate_like(V: MeshLike, F: Integers, *, name: str = "V", like: str) -> Any:
+    """Vertices of another shape of a checked mesh `like` with triangles F: an array as it came, or those of a Trimesh.
+
+    Raises
+    ------
+    ValueError
+        If it is a Trimesh with other triangles.
+    """
+    mesh = _trimesh(V)
+    if mesh is not None and not np.array_equal(mesh.faces, F):
+        got = f"{len(mesh.faces)} others"
+        raise ValueError(f"{name}: expected a Trimesh with the {len(F)} triangles of {like}, got {got}")
+    return V if mesh is None else np.asarray(mesh.vertices)
+
+
+def _trimesh(V: object) -> Any:
+    """V if it is a Trimesh, else None."""
+    # Whoever holds a Trimesh has imported trimesh; the others need not wait for it.
+    trimesh = sys.modules.get("trimesh")
+    return V if trimesh is not None and isinstance(V, trimesh.Trimesh) else None
+
+
+def validate_vertices(V: object, *, name: str = "V") -> Floats:
     """Finite (n, 3) float64 vertices, or a ValueError (see `validate_mesh`)."""
     V = np.asarray(V)
     if V.ndim != 2 or V.shape[1] != 3 or len(V) == 0 or V.dtype.kind not in "fiu":
@@ -76,7 +117,7 @@ def validate_vertices(V: ArrayLike, *, name: str = "V") -> NDArray[np.float64]:
     return V
 
 
-def validate_faces(F: ArrayLike, n: int, *, name: str = "F") -> NDArray[np.int64]:
+def validate_faces(F: object, n: int, *, name: str = "F") -> Integers:
     """In-range (m, 3) int64 triangles of `n` vertices, or a ValueError (see `validate_mesh`)."""
     F = np.asarray(F)
     if F.ndim != 2 or F.shape[1] != 3 or len(F) == 0 or F.dtype.kind not in "iu":
@@ -89,10 +130,6 @@ def validate_faces(F: ArrayLike, n: int, *, name: str = "F") -> NDArray[np.int64
     return F
 
 
-def degenerate_triangles(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArray[np.bool_]:
+def degenerate_triangles(V: Floats, F: Integers) -> Mask:
     """Mask (m,) of the triangles whose normal is lost in rounding. Scale-free; expects checked arrays."""
-    a, b, c = V[F[:, 0]], V[F[:, 1]], V[F[:, 2]]
-    twice_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    sides = np.stack([b - a, c - b, a - c], axis=1)
-    longest = np.einsum("fij,fij->fi", sides, sides).max(axis=1)
-    return twice_area <= _DEGENERATE * longest
+    return np.asarray(igl.doublearea(V, F) <= _DEGENERATE * igl.squared_edge_lengths(V, F).max(axis=1))

@@ -12,6 +12,8 @@ from toongeo.io.readers.read_glb import GlbDocument as GlbDocument
 from toongeo.io.readers.read_glb import read_glb as read_glb
 from toongeo.io.readers.read_image import read_image as read_image
 from toongeo.io.readers.read_landmarks import read_landmarks as read_landmarks
+from toongeo.io.readers.read_mesh import MESH_SUFFIXES as MESH_SUFFIXES
+from toongeo.io.readers.read_mesh import read_mesh as read_mesh
 from toongeo.io.readers.read_mesh_landmarks import read_mesh_landmarks as read_mesh_landmarks
 from toongeo.io.readers.read_obj import ObjData as ObjData
 from toongeo.io.readers.read_obj import read_obj as read_obj
@@ -19,6 +21,7 @@ from toongeo.io.scene import Scene as Scene
 from toongeo.io.scene import SceneAnimation as SceneAnimation
 from toongeo.io.scene import SceneMesh as SceneMesh
 from toongeo.io.split_seams import split_seams as split_seams
+from toongeo.io.trimesh_scene import trimesh_scene as trimesh_scene
 from toongeo.io.writers.vrm_meta import VrmMeta as VrmMeta
 from toongeo.io.writers.write_glb import write_glb as write_glb
 from toongeo.io.writers.write_image import write_image as write_image

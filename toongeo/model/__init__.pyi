@@ -1,5 +1,7 @@
 """The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
+from toongeo.model.atlas_coordinates import Atlas as Atlas
+from toongeo.model.atlas_coordinates import atlas_coordinates as atlas_coordinates
 from toongeo.model.data_path import data_path as data_path
 from toongeo.model.default_model import default_model as default_model
 from toongeo.model.expression_weights import expression_weights as expression_weights

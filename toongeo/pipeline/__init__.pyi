@@ -1,13 +1,19 @@
 """The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
 from toongeo.pipeline.align import AlignedFace as AlignedFace
+from toongeo.pipeline.align import AlignReport as AlignReport
 from toongeo.pipeline.align import align_face as align_face
 from toongeo.pipeline.fit import FaceFit as FaceFit
 from toongeo.pipeline.fit import FitOptions as FitOptions
+from toongeo.pipeline.fit import JawOptions as JawOptions
 from toongeo.pipeline.fit import PhotometricOptions as PhotometricOptions
+from toongeo.pipeline.fit import PriorOptions as PriorOptions
 from toongeo.pipeline.fit import RidgeRegressor as RidgeRegressor
+from toongeo.pipeline.fit import SolverOptions as SolverOptions
 from toongeo.pipeline.fit import adjust_coefficients as adjust_coefficients
 from toongeo.pipeline.fit import fit_3dmm as fit_3dmm
+from toongeo.pipeline.fit import fit_3dmm_together as fit_3dmm_together
+from toongeo.pipeline.fit import ibug_landmarks as ibug_landmarks
 from toongeo.pipeline.fit import photometric_fit as photometric_fit
 from toongeo.pipeline.fit import rendered_picture as rendered_picture
 from toongeo.pipeline.fit import residual_map as residual_map
@@ -18,6 +24,7 @@ from toongeo.pipeline.parse import snap_eyes as snap_eyes
 from toongeo.pipeline.rig import Animator as Animator
 from toongeo.pipeline.rig import Eyes as Eyes
 from toongeo.pipeline.rig import Rig as Rig
+from toongeo.pipeline.rig import RigReport as RigReport
 from toongeo.pipeline.rig import build_rig as build_rig
 from toongeo.pipeline.rig import close_lids as close_lids
 from toongeo.pipeline.rig import fit_eyes as fit_eyes

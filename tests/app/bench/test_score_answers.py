@@ -46,7 +46,7 @@ def test_round_trip_through_the_key(tmp_path, key, rng):
     ]
     found = score_answers(filled(tmp_path, lines), key)
     assert [p.question for p in found] == list(questions)
-    np.testing.assert_array_equal([[p.ours, p.baseline] for p in found], np.c_[chosen.sum(0), 10 - chosen.sum(0)])
+    np.testing.assert_array_equal([[p.first, p.second] for p in found], np.c_[chosen.sum(0), 10 - chosen.sum(0)])
 
 
 def test_p_values_are_exact(tmp_path, key):
@@ -80,6 +80,23 @@ def test_empty_answers_spaces_letters_and_several_forms(tmp_path, key):
 def test_bad_lines_are_named(tmp_path, key, line, message):
     with pytest.raises(ValueError, match=message):
         score_answers(filled(tmp_path, [line]), key)
+
+
+def test_other_sides_have_their_names(tmp_path, key):
+    pairs = {
+        "pair-01": {"picture": "a.png", "A": "old", "B": "new"},
+        "pair-02": {"picture": "b.png", "A": "new", "B": "old"},
+    }
+    key.write_text(json.dumps({"sides": ["new", "old"], "seed": 3, "pairs": pairs}))
+    found = score_answers(filled(tmp_path, ["pair-01,accuracy,B", "pair-02,accuracy,A", "pair-02,similarity,B"]), key)
+    assert found[1:] == [
+        Preference("accuracy", 2, 0, 0.5, ("new", "old")),
+        Preference("similarity", 0, 1, 1.0, ("new", "old")),
+    ]
+    lines = preferences_text(found).splitlines()
+    assert lines[0].split() == ["question", "new", "old", "share", "p"] and lines[-1].startswith(
+        "share: preferred new;"
+    )
 
 
 def test_bad_files_are_named(tmp_path, key):

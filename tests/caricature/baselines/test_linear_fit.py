@@ -3,7 +3,7 @@ import pytest
 
 from toongeo.caricature.baselines.bilinear_model import BilinearModel, bilinear_fit
 from toongeo.caricature.baselines.caricatured_modes import caricatured_modes
-from toongeo.caricature.baselines.linear_fit import linear_fit
+from toongeo.caricature.baselines.linear_fit import equations, linear_fit, ridge_solution
 from toongeo.render import ScaledOrthographicCamera
 
 
@@ -32,9 +32,19 @@ def test_regularization_keeps_the_face_near_the_mean(model, modes, cartoon):
 
 
 def test_missing_landmarks_are_left_out(model, modes, cartoon):
-    landmarks = cartoon("bad_guy")[1].copy()
-    landmarks[30] = np.nan
-    assert np.isfinite(linear_fit(landmarks, model, model.mean, modes, 3000.0).vertices).all()
+    """What is left is met as if it were all there is: the normal equations of the rest hold, and only they."""
+    landmarks, missing = cartoon("bad_guy")[1].copy(), [8, 30, 41]
+    whole = linear_fit(landmarks, model, model.mean, modes, 3000.0)
+    landmarks[missing] = np.nan
+    fit = linear_fit(landmarks, model, model.mean, modes, 3000.0)
+    seen = np.isfinite(landmarks[:, 0])
+    eyes = np.linalg.norm(landmarks[36] - landmarks[45])
+    moved = np.linalg.norm(fit.project(fit.vertices) - whole.project(whole.vertices), axis=1)[fit.landmark_vertices]
+    assert 0 < moved.max() < 0.1 * eyes
+    J, wanted = equations(model.mean, modes, fit.landmark_vertices[seen], landmarks[seen], fit.camera)
+    alpha = ridge_solution(J, wanted, 3000.0)
+    expected = model.mean + np.tensordot(alpha, modes.astype(float), 1)
+    np.testing.assert_allclose(fit.vertices, expected, atol=0.05)  # at the fixed point of pose and coefficients
 
 
 def test_singular_vectors_are_those_of_the_data_tensor(model, bilinear):

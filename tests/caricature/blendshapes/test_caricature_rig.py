@@ -1,3 +1,5 @@
+import sys
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,8 @@ from toongeo.pipeline.align.align_face import align_face
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 
 NAME = "bad_guy"
+
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
@@ -28,8 +32,13 @@ def face(drawn):
 
 
 @pytest.fixture(scope="module")
-def rig(face, drawn):
-    return caricature_rig(face, drawn)
+def rig(face, drawn, initial):
+    """With the initial shapes that are there already; that it makes the same ones shows in the avatar."""
+    module = sys.modules[caricature_rig.__module__]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "fit_caricature", lambda *_, **__: initial.source)
+        patch.setattr(module, "initial_blendshapes", lambda *_, **__: initial)
+        return caricature_rig(face, drawn)
 
 
 def normal_shapes(face_space):

@@ -73,10 +73,48 @@ def test_cotangent_closed_form_on_a_tetrahedron():
     np.testing.assert_allclose(uniform_laplacian(TETRAHEDRON[1], 4).toarray(), pattern / 3, atol=1e-15)
 
 
-def test_cotangent_is_that_of_libigl_with_the_other_sign(bumpy):
-    igl = pytest.importorskip("igl")
+def cotangents_angle_by_angle(V, F, clamp=None):
+    """The definition, dense."""
+    W, edge = np.zeros((len(V), len(V))), np.zeros((len(V), len(V)), bool)
+    for triangle in F:
+        for tip, i, j in (np.roll(triangle, k) for k in range(3)):
+            u, v = V[i] - V[tip], V[j] - V[tip]
+            W[[i, j], [j, i]] += 0.5 * (u @ v) / np.linalg.norm(np.cross(u, v))
+            edge[[i, j], [j, i]] = True
+    if clamp is not None:
+        W = np.where(edge, W.clip(clamp, 1 / clamp), 0.0)
+    return np.diag(W.sum(axis=1)) - W
+
+
+@pytest.mark.parametrize("clamp", [None, 0.01, 0.4, 1.0])
+def test_cotangent_is_its_definition(bumpy, clamp):
     V, F = bumpy
-    assert abs(cotangent_laplacian(V, F) + igl.cotmatrix(V, F)).max() < 1e-12
+    C = cotangent_laplacian(V, F, clamp=clamp)
+    assert C.format == "csr" and C.dtype == np.float64
+    np.testing.assert_allclose(C.toarray(), cotangents_angle_by_angle(V, F, clamp), atol=1e-12)
+
+
+@pytest.mark.parametrize("flat", [[0, 1, 2], [1, 1, 3], [3, 3, 3]], ids=["a line", "two corners", "one corner"])
+def test_a_triangle_without_area_changes_only_its_own_edges_when_clamped(grid, flat):
+    V, F = grid
+    assert np.ptp(V[[0, 1, 2]], axis=0).astype(bool).sum() == 1  # they do lie on a line
+    before = cotangent_laplacian(V, F, clamp=0.01).toarray()
+    after = cotangent_laplacian(V, np.vstack([F, flat]), clamp=0.01).toarray()
+    touched = np.isin(np.arange(len(V)), flat)
+    elsewhere = ~(touched[:, None] & touched)
+    np.testing.assert_array_equal(after[elsewhere], before[elsewhere])
+    np.testing.assert_allclose(after.sum(axis=1), 0, atol=1e-12)
+    np.testing.assert_array_equal(after, after.T)
+
+
+def test_an_edge_whose_weights_cancel_is_clamped_like_any_other():
+    # Both angles that face the diagonal of a square are right ones.
+    V, F = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    assert cotangent_laplacian(V, F, clamp=0.25).toarray()[0, 2] == -0.25
+    # A flat triangle adds plus and minus infinity to an edge of another flat one: no NaN, and clamped.
+    V = np.array([[0.0, 0, 0], [2, 0, 0], [1, 0, 0], [3, 0, 0]])
+    C = cotangent_laplacian(V, [[0, 1, 2], [0, 1, 3]], clamp=0.25).toarray()
+    assert C[0, 1] == -0.25 and C[0, 2] == -4.0 and C[0, 3] == -0.25
 
 
 @pytest.mark.parametrize("scale", [1e-4, 1.0, 1e4])

@@ -43,6 +43,12 @@ def test_lonely_and_degenerate_vertices_get_zero():
     np.testing.assert_array_equal(vertex_normals(V, [[0, 1, 2]]), np.zeros((4, 3)))
 
 
+def test_vertices_whose_triangles_cancel_get_zero(grid):
+    V, F = grid
+    both = np.vstack([F, F[:, ::-1]])
+    np.testing.assert_array_equal(vertex_normals(V, both), np.zeros_like(V))
+
+
 def test_bad_mesh():
     with pytest.raises(ValueError, match=r"F: expected indices in 0\.\.1"):
         vertex_normals([[0.0, 0, 0], [1, 0, 0]], [[0, 1, 2]])

@@ -90,6 +90,43 @@ def test_forms_of_faces(tmp_path):
     np.testing.assert_array_equal(polygon, [0, 1, 1, 2, 3, 3, 3])
 
 
+def test_any_mixture_of_forms_is_read_as_written(tmp_path, rng):
+    lines, faces, uv_faces, owners, objects = [], [], [], [], []
+    n = t = 0
+    vertices, uv = rng.normal(size=(400, 3)), rng.random((300, 2))
+    while n < 400 or t < 300:
+        kind = rng.choice(["v", "vt", "f", "o", "#"])
+        if kind == "v" and n < 400:
+            lines.append("v " + " ".join(map(repr, vertices[n].tolist())) + ["", " 0.5 0.5 0.5", " # a dot"][n % 3])
+            n += 1
+        elif kind == "vt" and t < 300:
+            lines.append("vt\t" + " ".join(map(repr, uv[t].tolist())) + " 0" * (t % 2))
+            t += 1
+        elif kind == "o":
+            objects = objects or ([""] if faces else [])
+            objects.append(f"part {len(objects)}")
+            lines.append(("g " if n % 2 else " o  ") + objects[-1])
+        elif kind == "f" and n and t:
+            corners = [(int(rng.integers(n)), int(rng.integers(t)), rng.integers(6)) for _ in range(rng.integers(3, 7))]
+            forms = ["{0}/{2}", "{1}/{3}/1", "{0}//1", "{1}", "{0}/", "{0}/{3}"]
+            words = [forms[form].format(i + 1, i - n, j + 1, j - t) for i, j, form in corners]
+            lines.append("f " + " ".join(words))
+            faces.append([i for i, _, _ in corners])
+            uv_faces.append([j if form in (0, 1, 5) else -1 for _, j, form in corners])
+            owners.append(max(len(objects) - 1, 0))
+        else:
+            lines.append("# f 1 2")
+    (tmp_path / "a.obj").write_text("\n".join(lines))
+    got = read_obj(tmp_path / "a.obj")
+    np.testing.assert_array_equal(got.vertices, vertices)
+    np.testing.assert_array_equal(got.uv, uv)
+    width = max(map(len, faces))
+    np.testing.assert_array_equal(got.faces, [face + [-1] * (width - len(face)) for face in faces])
+    np.testing.assert_array_equal(got.uv_faces, [face + [-1] * (width - len(face)) for face in uv_faces])
+    assert got.objects == tuple(objects)
+    np.testing.assert_array_equal(got.face_object, owners)
+
+
 def test_fans_keep_the_area_of_convex_polygons(tmp_path, rng):
     lines, area = [], 0.0
     for corners in (3, 4, 5, 8):
@@ -118,6 +155,14 @@ def test_fans_keep_the_area_of_convex_polygons(tmp_path, rng):
         ("v 0 0 0\nf 1 1 -2", "line 2 .*index -2 is out of range"),
         ("v 0 0 0\nf 1/1 1/1 1/1", "line 2 .*index 1 is out of range, 0 elements"),
         ("v 0 0 0\nf a b c", "line 2 .*invalid literal"),
+        ("v 0 0 0\nvt 0 0\nf 1 1 1\nf 1/1 1/1 1/x", "line 4 .*invalid literal.* 'x'"),
+        ("v 0 0 0\nf 1 1 1\nf 1 1 1\nf 1 1 7", "line 4 .*index 7 is out of range, 1 elements so far"),
+        ("v 0 0 0\nf 1 1 2\nv 0 0 0", "line 2 .*index 2 is out of range, 1 elements so far"),
+        ("v 0 0 0\nf 1 1 " + 30 * "9", "line 2 .*index 9+ is out of range, 1 elements so far"),
+        ("v 0 0 0\nf 1 1 " + 400 * "9", "line 2 .*int too large"),
+        ("v 0 0 0\nvt 0 0\nf 1 1 1\nf 1/1 /1 1/1", "line 4 .*invalid literal"),
+        ("v 0 0 0\nv 1 1 inf\nf 1 1 1", "line 2 .*expected 3 finite"),
+        ("", "expected an OBJ with faces, got none in .*a.obj"),
         ("v 0 0 0\n", "expected an OBJ with faces, got none in .*a.obj"),
     ],
 )

@@ -18,15 +18,13 @@ def outer_eyes(landmarks):
 
 
 @pytest.fixture(scope="module")
-def girl(cartoon):
-    img, landmarks = cartoon("blue_girl")
-    return fit_3dmm(img, landmarks), landmarks
+def girl(cartoon, fits):
+    return fits("blue_girl"), cartoon("blue_girl")[1]
 
 
-def test_reaches_every_landmark_of_the_cartoons(cartoon):
+def test_reaches_every_landmark_of_the_cartoons(cartoon, aligned):
     for name in CARTOONS:
-        img, landmarks = cartoon(name)
-        face = align_face(fit_3dmm(img, landmarks), landmarks)
+        face, landmarks = aligned(name), cartoon(name)[1]
         error = np.linalg.norm(face.project(face.vertices[face.landmark_vertices]) - landmarks, axis=1)
         assert np.sqrt((error[17:] ** 2).mean()) <= 1e-3 * outer_eyes(landmarks), name
 
@@ -77,6 +75,7 @@ def exaggerated_face(model, part, seed):
     return V, camera.project(V[visible_contour(model, camera, V, model.landmarks)])
 
 
+@pytest.mark.slow
 def test_scaled_depth_is_nearer_to_the_truth_than_kept_depth(model):
     """Mean distance over the face, after the best similarity, of exaggerated faces that are known in 3D."""
     front = model.region("face")
@@ -94,13 +93,12 @@ def test_scaled_depth_is_nearer_to_the_truth_than_kept_depth(model):
 
 
 @pytest.mark.parametrize("name", CARTOONS)
-def test_lids_and_lips_keep_their_order_and_nothing_folds(cartoon, name):
+def test_lids_and_lips_keep_their_order_and_nothing_folds(cartoon, fits, aligned, name):
     """Also where the drawing is exaggerated once more."""
-    img, landmarks = cartoon(name)
-    fit = fit_3dmm(img, landmarks)
+    fit, landmarks = fits(name), cartoon(name)[1]
     met = fit.project(fit.vertices[fit.landmark_vertices])
-    for wanted, bound in ((landmarks, 0.003), (landmarks + 0.2 * (landmarks - met), 0.01)):
-        face = align_face(fit, wanted)
+    more = align_face(fit, landmarks + 0.2 * (landmarks - met))
+    for face, bound in ((aligned(name), 0.003), (more, 0.01)):
         front = face.faces[face.region("face")[face.faces].all(1)]
         assert mesh_quality(face.vertices, front).intersecting_fraction < bound
         px = face.project(face.vertices)
@@ -118,11 +116,12 @@ def gaps(px, upper, lower):
     return px[upper] @ up - np.interp(px[upper] @ along, (px[lower] @ along)[order], (px[lower] @ up)[order])
 
 
-@pytest.mark.parametrize("phase", range(3))
-def test_left_out_landmarks_are_foretold_better_than_by_the_laplacian_alone(cartoon, phase):
-    hidden = np.arange(68) % 3 == phase
+@pytest.mark.slow
+def test_left_out_landmarks_are_foretold_better_than_by_the_laplacian_alone(cartoon):
+    """Every third one, another third in the next picture."""
     found = []
-    for name in CARTOONS:
+    for k, name in enumerate(CARTOONS):
+        hidden = np.arange(68) % 3 == k % 3
         _, landmarks = cartoon(name)
         fewer = np.where(hidden[:, None], np.nan, landmarks)
         fit = fit_3dmm(None, fewer)
@@ -162,10 +161,10 @@ def test_a_missing_landmark_anchors_nothing(girl):
 
 
 @pytest.mark.parametrize("row", [["teeth_upper"], ["teeth_lower", "tongue"]])
-def test_each_row_of_teeth_moves_as_a_whole(girl, row):
+def test_each_row_of_teeth_moves_as_a_whole(aligned, row):
     """An affine map carries it, the tongue with the lower one, and stretches no axis twice as much as another."""
-    fit, landmarks = girl
-    face = align_face(fit, landmarks)
+    face = aligned("blue_girl")
+    fit = face.fit
     parts = np.any([fit.region(name) for name in row], axis=0)
     before = np.column_stack([fit.vertices[parts], np.ones(parts.sum())])
     affine, *_ = np.linalg.lstsq(before, face.vertices[parts], rcond=None)

@@ -1,4 +1,6 @@
 import numpy as np
+import pytest
+from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from toongeo.model.anatomy.rims import opening_rim
@@ -32,6 +34,25 @@ def test_the_mouth_grows_no_more_than_the_face_that_holds_it(model):
     teeth = model.region("teeth_upper")
     before, after = (np.ptp(V[teeth], axis=0) for V in (model.mean, carried))
     assert (after / before < 1.25).all()
+
+
+@pytest.mark.parametrize(("side", "growth"), [(0, 2.0), (1, 1.5), (0, 0.7)])
+def test_the_socket_of_a_grown_eye_turns_inwards(model, side, growth):
+    """Twice as large, half of each offset points to the middle of the eyeball; of a smaller one, none."""
+    name = f"socket_{('left', 'right')[side]}"
+    rim, inside = opening_rim(model, name), model.region(name)
+    middle = model.mean[rim].mean(0)
+    moved = model.mean.copy()
+    moved[rim] = middle + growth * (moved[rim] - middle)
+    found = carry_inner_parts(model, model.mean, moved)[inside]
+    nearest = rim[cKDTree(model.mean[rim]).query(model.mean[inside])[1]]
+    offset = model.mean[inside] - model.mean[nearest]
+    growth = max(growth, 1)
+    inward = middle - [0, 0, growth * model.eyes[side].radius] - moved[nearest]
+    inward /= np.linalg.norm(inward, axis=1, keepdims=True)
+    length = np.linalg.norm(offset, axis=1, keepdims=True)
+    expected = moved[nearest] + offset / growth + (1 - 1 / growth) * length * inward
+    np.testing.assert_allclose(found, expected, atol=1e-9)
 
 
 def test_the_rims_are_closed_bands_of_skin(model):

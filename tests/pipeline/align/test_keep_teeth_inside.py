@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tests.conftest import CARTOONS
-from toongeo.pipeline import align_face, fit_3dmm
+from toongeo.pipeline import align_face
 from toongeo.pipeline.align.keep_teeth_inside import STEP, STEPS, enclosed, keep_teeth_inside
 from toongeo.pipeline.align.straighten_teeth import PARTS
 
@@ -44,7 +44,7 @@ def test_moving_the_head_moves_the_teeth(model, held):
 
 @pytest.mark.parametrize("name", CARTOONS)
 @pytest.mark.parametrize("flow", [True, False])
-def test_no_tooth_is_outside_of_a_drawn_face(name, flow, model, held, cartoon):
-    img, landmarks = cartoon(name)
-    V = align_face(fit_3dmm(img, landmarks), landmarks, flow=flow).vertices
+def test_no_tooth_is_outside_of_a_drawn_face(name, flow, model, held, cartoon, fits, aligned):
+    face = aligned(name) if flow else align_face(fits(name), cartoon(name)[1], flow=False)
+    V = face.vertices
     assert enclosed(model, V, V[held]).all()

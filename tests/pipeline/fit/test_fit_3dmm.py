@@ -12,6 +12,7 @@ from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.anatomy.visible_landmarks import visible_landmarks
 from toongeo.model.ibug68 import INNER, MIRROR, OUTER_EYES, PARTS
 from toongeo.model.opposites import OPPOSITES
+from toongeo.pipeline import JawOptions, PriorOptions, SolverOptions
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.problem.starting_problem import starting_problem
@@ -21,7 +22,7 @@ PICTURES = [
     "astronaut", "bad_guy", "beethoven", "blonde_girl_threequarter", "blue_girl", "manga_girl",
     "moustache_man",
 ]  # fmt: skip
-TIGHT = FitOptions(tolerance=1e-13, pitch_deviation=1e6)
+TIGHT = FitOptions(solver=SolverOptions(tolerance=1e-13), prior=PriorOptions(pitch_deviation=1e6))
 
 
 def drawing(name):
@@ -57,7 +58,11 @@ def test_a_known_face_is_met_exactly_when_the_prior_is_weak(model, annotated, ra
     pixels[PARTS["jaw"]] = np.nan  # without sliding points the loss is smooth, and zero at the truth
     errors = [
         fit_3dmm(
-            None, pixels, options=FitOptions(prior_weight=w, tolerance=1e-9, pitch_deviation=1e6)
+            None,
+            pixels,
+            options=FitOptions(
+                prior_weight=w, solver=SolverOptions(tolerance=1e-9), prior=PriorOptions(pitch_deviation=1e6)
+            ),
         ).report.rms_percent
         for w in (1e-6, 1e-8)
     ]
@@ -82,11 +87,12 @@ def test_a_stronger_prior_is_a_smaller_face_and_a_larger_error(model, face):
 
 def test_the_minimum_is_one(model, face):
     """No small step within the bounds lowers the loss of a pass."""
-    problem = starting_problem(model, face, FitOptions(tolerance=1e-14, max_passes=1))
-    problem = replace(problem, opposites=problem.opposites[:0])  # which are parted after a pass
+    problem = starting_problem(model, face, FitOptions(solver=SolverOptions(tolerance=1e-14, max_passes=1)))
+    apart = replace(problem.search, opposites=problem.search.opposites[:0])  # these are parted after a pass
+    problem = replace(problem, search=apart)
     fit = problem.solve("LD_LBFGS")
-    placed = visible_landmarks(problem.basis, problem.start[:144], problem.frame.rotation0)
-    loss = problem.loss(placed, problem.options.prior_weight, problem.trust)
+    placed = visible_landmarks(problem.basis, problem.search.start[:144], problem.frame.rotation0)
+    loss = problem.loss(placed, problem.options.prior_weight, problem.target.robust_weight)
     x = np.zeros(problem.unknowns.size)
     x[problem.unknowns.shape] = fit.coefficients
     # The pose is optimal for these coefficients: find it again from the camera.
@@ -96,14 +102,14 @@ def test_the_minimum_is_one(model, face):
     x[problem.unknowns.translation] = problem.frame.from_pixels(fit.camera.translation[None])[0]
     value, gradient = loss(x)
     assert value == pytest.approx(fit.loss, rel=1e-12)
-    lower, upper = problem.bounds
+    lower, upper = problem.search.bounds
     free = np.where((x > lower) & (gradient > 0) | (x < upper) & (gradient < 0), gradient, 0)
     assert np.abs(free / np.sqrt(loss.curvature(x))).max() < 1e-6
 
 
 @pytest.mark.parametrize("algorithm", ["LD_VAR2", "LD_TNEWTON_PRECOND_RESTART", "LD_CCSAQ"])
 def test_other_optimizers_find_the_same_face(face, algorithm):
-    options = FitOptions(tolerance=1e-12, max_passes=1, max_evaluations=20000)
+    options = FitOptions(solver=SolverOptions(tolerance=1e-12, max_passes=1, max_evaluations=20000))
     expected, found = (fit_3dmm(None, face, algorithm=a, options=options) for a in ("LD_LBFGS", algorithm))
     assert found.report.algorithm == algorithm
     assert found.report.loss == pytest.approx(expected.report.loss, rel=1e-4)
@@ -174,7 +180,7 @@ def test_a_missing_point_is_a_point_of_no_weight(face):
     """The jaw missing, and the jaw weighing nothing, are the same fit."""
     points = face.copy()
     points[PARTS["jaw"]] = np.nan
-    options = FitOptions(jaw_weight=0.0, max_passes=1)
+    options = FitOptions(jaw=JawOptions(weight=0.0), solver=SolverOptions(max_passes=1))
     np.testing.assert_allclose(
         coefficients(fit_3dmm(None, points, options=options)),
         coefficients(fit_3dmm(None, face, options=options)),
@@ -283,18 +289,18 @@ def test_arguments_are_not_written_to(face):
 
 
 def test_a_single_pass_gives_no_opposite_expressions_either():
-    weights = fit_3dmm(None, drawing("blue_girl"), max_passes=1).expression_weights()
+    weights = fit_3dmm(None, drawing("blue_girl"), solver=SolverOptions(max_passes=1)).expression_weights()
     assert all(min(weights[a], weights[b]) == 0 for a, b in OPPOSITES)
 
 
 def test_a_stop_after_few_evaluations_says_so(face):
-    report = fit_3dmm(None, face, options=FitOptions(max_evaluations=5, max_passes=1)).report
+    report = fit_3dmm(None, face, options=FitOptions(solver=SolverOptions(max_evaluations=5, max_passes=1))).report
     assert report.status == "MAXEVAL_REACHED"
     assert report.evaluations <= 6
 
 
 def test_a_stop_after_too_long_says_so(face):
-    report = fit_3dmm(None, face, options=FitOptions(max_seconds=1e-9, max_passes=1)).report
+    report = fit_3dmm(None, face, options=FitOptions(solver=SolverOptions(max_seconds=1e-9, max_passes=1))).report
     assert report.status == "MAXTIME_REACHED"
 
 
@@ -367,23 +373,25 @@ def test_a_model_without_the_68_landmarks(model, face):
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "message"),
+    ("group", "name", "value", "message"),
     [
-        ("prior_weight", -1.0, "prior_weight: expected a finite number > 0, got -1.0"),
-        ("landmark_weight", 0.0, "landmark_weight: expected a finite number > 0, got 0.0"),
-        ("expression_weight", float("nan"), "expression_weight: expected a finite number > 0"),
-        ("max_passes", 0, "max_passes: expected an integer >= 1, got 0"),
-        ("max_evaluations", 10.5, "max_evaluations: expected an integer >= 1, got 10.5"),
-        ("jaw_weight", -0.1, "jaw_weight: expected a finite number >= 0, got -0.1"),
-        ("tolerance", float("inf"), "tolerance: expected a finite number > 0"),
-        ("prior_weight", "1", "prior_weight: expected a finite number > 0, got '1'"),
-        ("prior_weight", True, "prior_weight: expected a finite number > 0, got True"),
-        ("pitch_deviation", 0.0, "pitch_deviation: expected a finite number > 0, got 0.0"),
-        ("max_seconds", 0.0, "max_seconds: expected a finite number > 0, got 0.0"),
-        ("refine", 1, "refine: expected one of True, False, got 1"),
-        ("jaw_tangent", 1.5, r"jaw_tangent: expected a number in \[0, 1\], got 1.5"),
+        (FitOptions, "prior_weight", -1.0, "prior_weight: expected a finite number > 0, got -1.0"),
+        (FitOptions, "landmark_weight", 0.0, "landmark_weight: expected a finite number > 0, got 0.0"),
+        (FitOptions, "prior_weight", "1", "prior_weight: expected a finite number > 0, got '1'"),
+        (FitOptions, "prior_weight", True, "prior_weight: expected a finite number > 0, got True"),
+        (FitOptions, "refine", 1, "refine: expected one of True, False, got 1"),
+        (FitOptions, "prior", 1.0, "prior: expected PriorOptions, got float"),
+        (FitOptions, "solver", JawOptions(), "solver: expected SolverOptions, got JawOptions"),
+        (PriorOptions, "expression_weight", float("nan"), "expression_weight: expected a finite number > 0"),
+        (PriorOptions, "pitch_deviation", 0.0, "pitch_deviation: expected a finite number > 0, got 0.0"),
+        (JawOptions, "weight", -0.1, "weight: expected a finite number >= 0, got -0.1"),
+        (JawOptions, "tangent", 1.5, r"tangent: expected a number in \[0, 1\], got 1.5"),
+        (SolverOptions, "max_passes", 0, "max_passes: expected an integer >= 1, got 0"),
+        (SolverOptions, "max_evaluations", 10.5, "max_evaluations: expected an integer >= 1, got 10.5"),
+        (SolverOptions, "tolerance", float("inf"), "tolerance: expected a finite number > 0"),
+        (SolverOptions, "max_seconds", 0.0, "max_seconds: expected a finite number > 0, got 0.0"),
     ],
 )
-def test_bad_options(name, value, message):
+def test_bad_options(group, name, value, message):
     with pytest.raises(ValueError, match=message):
-        FitOptions(**{name: value})
+        group(**{name: value})

@@ -5,14 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from toongeo import align_face, build_rig, fit_3dmm
+from toongeo import build_rig
 from toongeo.model.expression_features import FEATURE_OF
+from toongeo.pipeline.rig.feature_gains import feature_gains
 
 
 @pytest.fixture(scope="module")
-def face(cartoon):
-    img, landmarks = cartoon("moustache_man")
-    return align_face(fit_3dmm(img, landmarks), landmarks)
+def face(aligned):
+    return aligned("moustache_man")
 
 
 def with_vertices(face, V):
@@ -73,6 +73,17 @@ def test_gains_keep_within_their_range(face, model):
     for k, name in enumerate(plain.names):
         peak = np.unravel_index(np.abs(plain.deltas[k]).argmax(), plain.deltas[k].shape)
         assert 0.5 - 1e-6 <= auto.deltas[k][peak] / plain.deltas[k][peak] <= 2 + 1e-6, name
+
+
+@pytest.mark.parametrize(
+    ("slower", "expected"), [(1.0, 1.0), (1.6, 1.6), (2.5, 2.0), (9.0, 2.0), (0.7, 0.7), (0.3, 0.5)]
+)
+def test_the_gain_is_the_travel_that_lacks_from_a_half_to_twice(face, model, slower, expected):
+    on_template = build_rig(with_vertices(face, model.mean)).deltas
+    gains = feature_gains(model, model.mean, on_template / slower)
+    featured = np.array([name in FEATURE_OF for name in model.expression_names[: len(gains)]])
+    assert featured.sum() > 30
+    np.testing.assert_allclose(gains, np.where(featured, expected, 1.0), rtol=1e-5)
 
 
 @pytest.mark.parametrize("gain", ["much", 0, -1.0, float("nan"), None])

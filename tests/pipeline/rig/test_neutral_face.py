@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from toongeo import align_face, build_rig, fit_3dmm, make_avatar, neutral_face
+from toongeo import build_rig, make_avatar, neutral_face
 from toongeo.model.expression_features import FEATURE_OF, FEATURES, REMOVED, SIGNS
 from toongeo.pipeline.rig.fit_pose import fit_pose
 
@@ -23,9 +23,8 @@ def posed(face, weights):
 
 
 @pytest.fixture(scope="module")
-def face(cartoon):
-    img, landmarks = cartoon("moustache_man")
-    return align_face(fit_3dmm(img, landmarks), landmarks)
+def face(aligned):
+    return aligned("moustache_man")
 
 
 def lip_gap(model, V):
@@ -115,16 +114,15 @@ def test_a_pose_of_another_mesh_is_refused(face):
         fit_pose(build_rig(face), np.zeros((5, 3)), np.ones(5, bool))
 
 
-def test_the_avatar_is_at_rest_and_its_pose_is_the_picture(cartoon, model):
+def test_the_avatar_is_at_rest_and_its_pose_is_the_picture(cartoon, avatars, model):
     """The astronaut smiles: the neutral face has its mouth shut, the pose brings back the face of the picture."""
-    img, landmarks = cartoon("astronaut")
-    smiling = make_avatar(img, landmarks, texture_size=64)
+    smiling = avatars("astronaut")
     skin = smiling.face.region("face")
     motion = np.linalg.norm(smiling.face.vertices - smiling.vertices(), axis=1)[skin]
     left = np.linalg.norm(smiling.face.vertices - smiling.vertices(smiling.rig.pose), axis=1)[skin]
     assert np.sqrt((left**2).mean()) < 0.2 * np.sqrt((motion**2).mean())
     assert lip_gap(model, smiling.vertices())[1] < 0.2 * lip_gap(model, smiling.face.vertices)[1]
     assert 100 * smiling.report.aligned["inner51"] <= 0.1  # the face of the picture still meets the landmarks
-    as_drawn = make_avatar(img, landmarks, texture_size=64, neutral=False)
+    as_drawn = make_avatar(*cartoon("astronaut"), texture_size=64, neutral=False)
     np.testing.assert_array_equal(as_drawn.vertices(), as_drawn.face.vertices)
     np.testing.assert_array_equal(as_drawn.rig.pose, 0)

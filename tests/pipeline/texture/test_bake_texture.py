@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from toongeo.model.ibug68 import MIRROR
-from toongeo.pipeline import align_face, bake_texture, fit_3dmm
+from toongeo.pipeline import bake_texture
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.bake_texture import _atlas_fragments
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, MAX_SIDE, OPENINGS, face_picture, opening_mask
@@ -13,9 +13,8 @@ from toongeo.render import ScaledOrthographicCamera, sample_image, uv_to_px
 
 
 @pytest.fixture(scope="module")
-def face(cartoon):
-    img, landmarks = cartoon("moustache_man")
-    return align_face(fit_3dmm(img, landmarks), landmarks)
+def face(aligned):
+    return aligned("moustache_man")
 
 
 @pytest.fixture(scope="module")

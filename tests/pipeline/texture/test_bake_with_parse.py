@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from toongeo.pipeline import align_face, bake_texture, fit_3dmm
+from toongeo.pipeline import bake_texture
 from toongeo.pipeline.texture.bake_texture import _atlas_fragments
 from toongeo.protocols import FaceLabel, FaceParse
 
@@ -14,9 +14,8 @@ HAIR, SKIN = (60, 30, 10), (220, 170, 140)
 
 
 @pytest.fixture(scope="module")
-def face(cartoon):
-    img, landmarks = cartoon("moustache_man")
-    return align_face(fit_3dmm(img, landmarks), landmarks)
+def face(aligned):
+    return aligned("moustache_man")
 
 
 def texels_of(face, name, atlas):

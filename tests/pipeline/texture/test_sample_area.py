@@ -25,6 +25,15 @@ def test_up_to_a_pixel_nothing_is_filtered(rng):
     np.testing.assert_array_equal(sample_area(img, px, np.ones(81)), img.ravel())
 
 
+def test_outside_and_in_an_odd_last_row_the_border_goes_on():
+    """Of 3 x 3 pixels the last 2 x 2 mean is the corner four times, that of 1 x 2 beside it two pixels twice."""
+    img = np.array([[1.0, 2, 4], [8, 16, 32], [64, 128, 256]])
+    px = np.array([[2.5, 2.5], [0.5, 0.5], [2.5, 0.5], [0.5, 2.5], [40, 40], [-9, 0.5]])
+    expected = [256, (1 + 2 + 8 + 16) / 4, (4 + 32) / 2, (64 + 128) / 2, 256, (1 + 2 + 8 + 16) / 4]
+    np.testing.assert_allclose(sample_area(img, px, np.full(6, 2.0)), expected)
+    np.testing.assert_allclose(sample_area(img, px, np.ones(6))[-2:], [256, (1 + 8) / 2])
+
+
 def test_footprints_are_checked():
     with pytest.raises(ValueError, match="footprint: expected 1 positive numbers"):
         sample_area(np.ones((4, 4)), np.zeros((1, 2)), np.zeros(1))

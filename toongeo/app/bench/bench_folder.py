@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from toongeo.io import read_image, read_landmarks
 
-__all__ = ["BenchPicture", "bench_folder"]
+__all__ = ["PICTURES", "BenchPicture", "bench_folder"]
 
-_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
+PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
 _LANDMARKS = (".pts", ".txt", ".csv", ".npy")
 
 
@@ -47,9 +47,9 @@ def bench_folder(folder: Path) -> list[BenchPicture]:
     """
     if not folder.is_dir():
         raise NotADirectoryError(f"folder: expected a folder of pictures, got {folder}")
-    pictures = sorted(path for path in folder.iterdir() if path.suffix.lower() in _PICTURES and path.is_file())
+    pictures = sorted(path for path in folder.iterdir() if path.suffix.lower() in PICTURES and path.is_file())
     if not pictures:
-        raise ValueError(f"folder: expected pictures ({', '.join(_PICTURES)}), got none in {folder}")
+        raise ValueError(f"folder: expected pictures ({', '.join(PICTURES)}), got none in {folder}")
     stems: dict[str, Path] = {}
     found = []
     for picture in pictures:

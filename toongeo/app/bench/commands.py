@@ -23,10 +23,13 @@ def add_bench(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -
             table.add_argument("--eos", type=Path, metavar="MODELS", help="compare eos-py too, with its model files")
         table.set_defaults(run=run)
     pairs = benches.add_parser("pairs", help="blind sheets of two faces, with a hidden key and an answer form")
-    _add_folder(pairs)
+    about = "pictures with landmarks beside them; or renders, if a second folder is given"
+    pairs.add_argument("folder", type=Path, metavar="FOLDER", help=about)
+    pairs.add_argument("new", type=Path, nargs="?", metavar="NEW", help="renders of the same names, to be compared")
+    pairs.add_argument("--inputs", type=Path, metavar="DIR", help="pictures to show over renders, of the same stems")
     pairs.add_argument("-o", "--output", type=Path, required=True, metavar="OUT")
     pairs.add_argument("--seed", type=int, default=0, metavar="N", help="of the shuffles (default 0)")
-    pairs.add_argument("--against", choices=("coarse", "adjust"), default="coarse", help="the rival (default coarse)")
+    pairs.add_argument("--against", choices=("coarse", "adjust"), help="the baseline (default coarse)")
     pairs.set_defaults(run=_pairs)
     score = benches.add_parser("score", help="count the answers to the pairs")
     score.add_argument("answers", type=Path, metavar="ANSWERS", help="the form, filled in")
@@ -48,8 +51,9 @@ def _check_output(options: argparse.Namespace, table: str | None = None) -> None
         return
     if not output.is_dir():
         raise NotADirectoryError(f"output: expected a folder, got the file {output}")
-    if folder.exists() and output.samefile(folder):
-        raise ValueError(f"output: expected another folder than that of the pictures, got {output}")
+    for given in (folder, getattr(options, "new", None), getattr(options, "inputs", None)):
+        if given is not None and given.exists() and output.samefile(given):
+            raise ValueError(f"output: expected another folder than that of the pictures, got {output}")
     if table is not None:
         check_table(table, output)
 
@@ -90,10 +94,19 @@ def _caricature(options: argparse.Namespace) -> None:
 
 
 def _pairs(options: argparse.Namespace) -> None:
-    from toongeo.app.bench.pair_sheets import KEY, QUESTIONS, pair_sheets
+    from toongeo.app.bench.blind_sheets import KEY, QUESTIONS
+    from toongeo.app.bench.pair_sheets import pair_sheets
+    from toongeo.app.bench.render_pairs import render_pairs
 
     _check_output(options)
-    sheets = pair_sheets(options.folder, options.output, seed=options.seed, against=options.against)
+    if options.new is None:
+        if options.inputs is not None:
+            raise ValueError("inputs: expected two folders of renders to show them over, got one folder")
+        sheets = pair_sheets(options.folder, options.output, seed=options.seed, against=options.against or "coarse")
+    else:
+        if options.against is not None:
+            raise ValueError(f"against: expected no baseline beside two folders of renders, got {options.against}")
+        sheets = render_pairs(options.folder, options.new, options.output, seed=options.seed, inputs=options.inputs)
     print(f"wrote {len(sheets)} sheets, answers.csv and {KEY} to {options.output}")
     print("Answer A or B for each sheet and question; leave the key closed until all answers are in:")
     print("\n".join(f"  {question}: {words}" for question, words in QUESTIONS.items()))

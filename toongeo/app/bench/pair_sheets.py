@@ -2,36 +2,24 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
-import os
 from pathlib import Path
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
-from tqdm import tqdm
 
 from toongeo.app.bench.bench_folder import bench_folder
+from toongeo.app.bench.blind_sheets import blind_sheets, side_by_side
 from toongeo.app.bench.face_crop import face_crop
 from toongeo.app.bench.plain_avatar import plain_avatar
+from toongeo.arrays import Bytes, Floats
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.make_avatar import make_avatar
-from toongeo.io import atomic_write, encode_image
 from toongeo.pipeline import adjust_coefficients, fit_3dmm
 
-__all__ = ["BASELINES", "KEY", "QUESTIONS", "pair_sheets"]
+__all__ = ["BASELINES", "FITTED", "pair_sheets"]
 
-QUESTIONS = {
-    "aesthetics": "Which 3D face is more pleasing to look at?",
-    "accuracy": "Of which are the overall shape and the place of each part of the face more correct?",
-    "similarity": "Which looks more like the input?",
-}
 BASELINES = ("coarse", "adjust")
-KEY, _ANSWERS = ".key.json", "answers.csv"
+FITTED = ("ours", "baseline")
 _YAWS = (0.0, 40.0)
-_INK, _PAPER, _GUTTER = (40, 40, 40), 255, 24
 
 
 def pair_sheets(folder: Path, output: Path, *, seed: int = 0, against: str = "coarse", tile: int = 360) -> list[Path]:
@@ -69,41 +57,23 @@ def pair_sheets(folder: Path, output: Path, *, seed: int = 0, against: str = "co
     """
     if against not in BASELINES:
         raise ValueError(f"against: expected one of {', '.join(BASELINES)}, got {against!r}")
-    if seed < 0:
-        raise ValueError(f"seed: expected an integer >= 0, got {seed}")
     pictures = bench_folder(folder)
-    names = [f"pair-{k + 1:02d}" for k in range(len(pictures))]
-    for path in (output / _ANSWERS, output / KEY, *(output / f"{name}.png" for name in names)):
-        if path.exists():
-            raise FileExistsError(f"output: {path} is there already; choose another folder or move it")
-    rng = np.random.default_rng(seed)
-    order, ours_first = rng.permutation(len(pictures)), rng.permutation(len(pictures)) % 2 == 0
-    sheets: dict[str | os.PathLike[str], bytes] = {}
-    pairs: dict[str, dict[str, str]] = {}
-    for k, which in enumerate(tqdm(order, unit="pair", leave=False)):
-        picture, name = pictures[which], names[k]
-        img, landmarks = picture.read()
+
+    def sheet(which: int, ours_is_a: bool) -> Bytes:
+        img, landmarks = pictures[which].read()
         try:
-            ours, baseline = _rivals(img, landmarks, against)
+            rivals = _rivals(img, landmarks, against)
         except (ValueError, RuntimeError) as error:
-            raise type(error)(f"{picture.name}: {error}") from error
-        pair = (ours, baseline) if ours_first[k] else (baseline, ours)
-        sheets[output / f"{name}.png"] = encode_image(_sheet(img, landmarks, pair, tile))
-        sides = ("ours", "baseline") if ours_first[k] else ("baseline", "ours")
-        pairs[name] = {"picture": picture.name, "A": sides[0], "B": sides[1]}
-    key = {"baseline": against, "seed": seed, "pairs": pairs}
-    output.mkdir(parents=True, exist_ok=True)
-    atomic_write(
-        {
-            **sheets,
-            output / KEY: (json.dumps(key, indent=1) + "\n").encode(),
-            output / _ANSWERS: _form(list(pairs)).encode(),
-        }
-    )
-    return [Path(sheet) for sheet in sheets]
+            raise type(error)(f"{pictures[which].name}: {error}") from error
+        a, b = (_views(avatar, tile) for avatar in (rivals if ours_is_a else rivals[::-1]))
+        # No landmarks are drawn: they would tell the judges what was fitted.
+        return side_by_side(face_crop(img, landmarks, tile).pixels, a, b)
+
+    names = [picture.name for picture in pictures]
+    return blind_sheets(names, sheet, output, sides=FITTED, seed=seed, about={"baseline": against})
 
 
-def _rivals(img: NDArray[np.uint8], landmarks: NDArray[np.float64], against: str) -> tuple[Avatar, Avatar]:
+def _rivals(img: Bytes, landmarks: Floats, against: str) -> tuple[Avatar, Avatar]:
     """Ours and the baseline, both from the landmarks alone, as `make_avatar` is by default."""
     ours = make_avatar(img, landmarks)
     fit = fit_3dmm(img, landmarks)
@@ -112,29 +82,6 @@ def _rivals(img: NDArray[np.uint8], landmarks: NDArray[np.float64], against: str
     return ours, plain_avatar(img, landmarks, fit, ours.parse)
 
 
-def _sheet(
-    img: NDArray[np.uint8], landmarks: NDArray[np.float64], pair: tuple[Avatar, Avatar], tile: int
-) -> NDArray[np.uint8]:
-    """Input over A and B; (2 * tile, 4 * tile + 24, 3)."""
-    gutter = np.full((tile, _GUTTER, 3), _PAPER, np.uint8)
-    left, right = (_views(avatar, letter, tile) for avatar, letter in zip(pair, "AB", strict=True))
-    faces = np.hstack([left, gutter, right])
-    top = np.full_like(faces, _PAPER)
-    first = (faces.shape[1] - tile) // 2
-    # No landmarks are drawn: they would tell the judges what was fitted.
-    top[:, first : first + tile] = face_crop(img, landmarks, tile).pixels
-    return np.vstack([top, faces])
-
-
-def _views(avatar: Avatar, letter: str, tile: int) -> NDArray[np.uint8]:
-    views = np.ascontiguousarray(np.hstack([avatar.render(size=tile, yaw=yaw) for yaw in _YAWS]))
-    cv2.putText(views, letter, (10, 34), cv2.FONT_HERSHEY_SIMPLEX, 1.1, _INK, 2, cv2.LINE_AA)
-    return views
-
-
-def _form(names: list[str]) -> str:
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(["picture", "question", "answer"])
-    writer.writerows([name, question, ""] for name in names for question in QUESTIONS)
-    return stream.getvalue()
+def _views(avatar: Avatar, tile: int) -> Bytes:
+    """From the front and turned; (tile, 2 * tile, 3)."""
+    return np.hstack([avatar.render(size=tile, yaw=yaw) for yaw in _YAWS])

@@ -10,6 +10,7 @@ from toongeo.avatar.report import AvatarReport, landmark_errors
 from toongeo.metrics import mesh_quality
 from toongeo.pipeline import (
     AlignedFace,
+    AlignReport,
     FaceFit,
     aim_eyes,
     bake_eyes,
@@ -40,7 +41,7 @@ def plain_avatar(
     texture_size : int
         Side of the atlas, texels.
     """
-    face = AlignedFace(fit.vertices, fit.camera, fit.landmark_vertices, fit.model, fit, report={})
+    face = AlignedFace(fit.vertices, fit.camera, fit.landmark_vertices, fit.model, fit, report=AlignReport())
     rig, eyes = fit_lids(face, fit_mouth(face, build_rig(face)))
     irises = find_irises(img, landmarks)
     eyes = aim_eyes(face, eyes, irises)

@@ -9,12 +9,12 @@ from pathlib import Path
 
 from scipy.stats import binomtest
 
-from toongeo.app.bench.pair_sheets import QUESTIONS
+from toongeo.app.bench.blind_sheets import QUESTIONS
+from toongeo.app.bench.pair_sheets import FITTED
 
 __all__ = ["Preference", "preferences_text", "score_answers"]
 
 _COLUMNS = ("picture", "question", "answer")
-_SIDES = {"ours", "baseline"}
 
 
 @dataclass(frozen=True)
@@ -24,22 +24,25 @@ class Preference:
     Attributes
     ----------
     question : str
-    ours, baseline : int
-        How often each was preferred.
+    first, second : int
+        How often each side was preferred.
     p_value : float
         Of so uneven a split or a more uneven one, if either were chosen with probability 1/2 (exact, two-sided); 1
         without answers. The test takes the answers for independent, which those of several people to one sheet are
         not quite.
+    sides : (str, str)
+        What they are called: ours and baseline, or new and old.
     """
 
     question: str
-    ours: int
-    baseline: int
+    first: int
+    second: int
     p_value: float
+    sides: tuple[str, str] = FITTED
 
 
 def score_answers(answers: Path, key: Path) -> list[Preference]:
-    """Count the answers, with the key that tells which face is ours.
+    """Count the answers, with the key that tells which face is whose.
 
     Parameters
     ----------
@@ -47,7 +50,7 @@ def score_answers(answers: Path, key: Path) -> list[Preference]:
         CSV with the columns picture, question and answer (A or B; empty: not answered). Forms of several people may
         stand beneath each other in it.
     key : Path
-        ``.key.json`` as `pair_sheets` wrote it.
+        ``.key.json`` as `pair_sheets` or `render_pairs` wrote it.
 
     Returns
     -------
@@ -61,8 +64,8 @@ def score_answers(answers: Path, key: Path) -> list[Preference]:
     OSError
         If a file cannot be read.
     """
-    sides = _sides(key)
-    counts = {question: {side: 0 for side in _SIDES} for question in QUESTIONS}
+    names, sides = _sides(key)
+    counts = {question: dict.fromkeys(names, 0) for question in QUESTIONS}
     for where, picture, question, answer in _answered(answers):
         for name, value, known in (
             ("picture", picture, sides), ("question", question, counts), ("answer", answer, ("A", "B")),
@@ -72,34 +75,36 @@ def score_answers(answers: Path, key: Path) -> list[Preference]:
         counts[question][sides[picture][answer]] += 1
     if not any(sum(count.values()) for count in counts.values()):
         raise ValueError(f"answers: expected at least one answer A or B, got none in {answers}")
-    return [_preference(question, **count) for question, count in counts.items()]
+    return [_preference(question, count[names[0]], count[names[1]], names) for question, count in counts.items()]
 
 
 def preferences_text(preferences: list[Preference]) -> str:
     """A line a question."""
-    lines = [f"{'question':<12}{'ours':>6}{'baseline':>10}{'share':>9}{'p':>10}"]
+    first, second = preferences[0].sides
+    lines = [f"{'question':<12}{first:>6}{second:>10}{'share':>9}{'p':>10}"]
     for found in preferences:
-        count = found.ours + found.baseline
-        share = f"{100 * found.ours / count:.1f} %" if count else "-"
-        lines.append(f"{found.question:<12}{found.ours:>6}{found.baseline:>10}{share:>9}{found.p_value:>10.3g}")
-    return "\n".join([*lines, "share: preferred ours; p: exact two-sided binomial test against 1/2"])
+        count = found.first + found.second
+        share = f"{100 * found.first / count:.1f} %" if count else "-"
+        lines.append(f"{found.question:<12}{found.first:>6}{found.second:>10}{share:>9}{found.p_value:>10.3g}")
+    return "\n".join([*lines, f"share: preferred {first}; p: exact two-sided binomial test against 1/2"])
 
 
-def _preference(question: str, ours: int, baseline: int) -> Preference:
-    p_value = float(binomtest(ours, ours + baseline).pvalue) if ours + baseline else 1.0
-    return Preference(question, ours, baseline, p_value)
+def _preference(question: str, first: int, second: int, sides: tuple[str, str]) -> Preference:
+    p_value = float(binomtest(first, first + second).pvalue) if first + second else 1.0
+    return Preference(question, first, second, p_value, sides)
 
 
-def _sides(key: Path) -> dict[str, dict[str, str]]:
-    """Sheet -> letter -> whose face."""
+def _sides(key: Path) -> tuple[tuple[str, str], dict[str, dict[str, str]]]:
+    """The two sides; and sheet -> letter -> side."""
     try:
-        pairs = json.loads(key.read_text(encoding="utf-8"))["pairs"]
-        sides = {name: {letter: pair[letter] for letter in "AB"} for name, pair in pairs.items()}
+        content = json.loads(key.read_text(encoding="utf-8"))
+        first, second = content.get("sides", FITTED)
+        pairs = {name: {letter: pair[letter] for letter in "AB"} for name, pair in content["pairs"].items()}
     except (ValueError, KeyError, TypeError, AttributeError):
         raise ValueError(f"key: expected the key that `toongeo bench pairs` wrote, got {key}") from None
-    if not sides or any(set(pair.values()) != _SIDES for pair in sides.values()):
-        raise ValueError(f"key: expected ours and baseline for the letters of each pair, got others in {key}")
-    return sides
+    if not pairs or any({pair["A"], pair["B"]} != {first, second} for pair in pairs.values()):
+        raise ValueError(f"key: expected {first} and {second} for the letters of each pair, got others in {key}")
+    return (first, second), pairs
 
 
 def _answered(path: Path) -> list[tuple[str, str, str, str]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import secrets
 import sys
 from http import HTTPStatus
@@ -41,6 +42,7 @@ class EditorServer(ThreadingHTTPServer):
     """
 
     daemon_threads = True
+    allow_reuse_address = os.name == "posix"  # elsewhere it would let two servers share a port
 
     def __init__(self, session: EditorSession, port: int = 0) -> None:
         self.session = session

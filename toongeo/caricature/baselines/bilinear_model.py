@@ -18,7 +18,7 @@ from toongeo.render.camera import ScaledOrthographicCamera
 __all__ = ["BilinearModel", "bilinear_fit"]
 
 _RANKS = 50, 25  # kept singular vectors, as FaceWarehouse keeps them
-_PASSES = 10
+_PASSES = 10  # of camera and coefficients in turn
 _RIDGE = 1e-3  # of the mean diagonal: without it, coefficients that landmarks do not tell run away
 
 

@@ -20,7 +20,7 @@ from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["LinearFit", "equations", "linear_fit", "posed", "ridge_solution"]
 
-_PASSES = 20
+_PASSES = 20  # of camera and coefficients in turn
 _TINY = 1e-9  # ridge of what has no regularization, against the mean diagonal: picks the smallest of many solutions
 
 

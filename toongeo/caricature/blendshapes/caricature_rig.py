@@ -1,4 +1,7 @@
-"""A rig whose expressions are those of a caricature (Chen et al. 2020, section 3.2)."""
+"""A rig whose expressions are those of a caricature (Chen et al. 2020, section 3.2).
+
+Constants were judged on faces of the deformation space and four pictures (``benchmarks/caricature_expressions.py``).
+"""
 
 from __future__ import annotations
 
@@ -21,8 +24,9 @@ from toongeo.caricature.inner_parts import with_inner_parts
 from toongeo.caricature.space.face_space import FaceSpace, face_space
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.build_rig import build_rig
-from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.rig import Rig, RigReport
 from toongeo.protocols import LandmarkMapper
 
 __all__ = ["caricature_rig"]
@@ -39,6 +43,7 @@ def caricature_rig(
     *,
     mapper: LandmarkMapper | None = None,
     weights: BlendshapeWeights | None = None,
+    scheme: str = "ibug68",
 ) -> Rig:
     """Named expressions in the manner of the drawing: as `build_rig`, but each is reconstructed and optimized.
 
@@ -58,6 +63,8 @@ def caricature_rig(
     weights : BlendshapeWeights, optional
         Of the optimization. If None, its defaults with masks that hold still only what hardly moves in the normal
         face.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -71,6 +78,7 @@ def caricature_rig(
         If the landmarks are malformed.
     """
     started = time.perf_counter()
+    landmarks = ibug_landmarks(landmarks, scheme)
     model, space = face.model, face_space(face.model)
     initial = initial_blendshapes(fit_caricature(None, landmarks, space=space), landmarks, mapper=mapper)
     D_normal = model.expression[: model.n_named, space.vertices].astype(np.float64)
@@ -89,7 +97,7 @@ def caricature_rig(
         deltas=deltas,
         gaze=np.zeros((len(GAZE_NAMES), *face.vertices.shape), np.float32),
         pose=pose,
-        report={"seconds": time.perf_counter() - started},
+        report=RigReport(time.perf_counter() - started),
     )
 
 

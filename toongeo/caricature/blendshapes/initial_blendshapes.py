@@ -1,4 +1,7 @@
-"""Expressions of a caricature from those of the normal face behind it (Chen et al. 2020, section 3.2.2)."""
+"""Expressions of a caricature from those of the normal face behind it (Chen et al. 2020, section 3.2.2).
+
+Constants were judged on faces of the deformation space and four pictures (``benchmarks/caricature_expressions.py``).
+"""
 
 from __future__ import annotations
 
@@ -17,20 +20,20 @@ from toongeo.caricature.caricature_options import CaricatureOptions
 from toongeo.caricature.fit_caricature import fit_caricature
 from toongeo.caricature.space.deformation_representation import deformation_representation
 from toongeo.caricature.space.face_space import FaceSpace
-from toongeo.io.landmark_array import landmark_array
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.anatomy.visible_landmarks import landmarks_seen
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.protocols import HeadCamera, LandmarkMapper
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["InitialBlendshapes", "initial_blendshapes"]
 
 _PRIOR = 1e-6  # of the fit to F+(L), which is a face of people: it should keep what F+ tells
-_RIDGE = 1e-3
-_STEPS = 2
-_SAME = 1e-5
+_RIDGE = 1e-3  # of the mean diagonal: keeps weights of like shapes small
+_STEPS = 2  # of Levenberg-Marquardt: the fit only starts the optimization
+_SAME = 1e-5  # largest difference of stretches at which a shape is one of the space's own
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +67,7 @@ class InitialBlendshapes:
 
 
 def initial_blendshapes(
-    source: CaricatureFit, landmarks: ArrayLike, *, mapper: LandmarkMapper | None = None
+    source: CaricatureFit, landmarks: ArrayLike, *, mapper: LandmarkMapper | None = None, scheme: str = "ibug68"
 ) -> InitialBlendshapes:
     """Neutral face and named expressions of a caricature, one reconstruction each (Eq. 2-3).
 
@@ -80,6 +83,8 @@ def initial_blendshapes(
         NaN rows are missing.
     mapper : LandmarkMapper, optional
         `PartMapper` of the source's model if None.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -90,7 +95,7 @@ def initial_blendshapes(
     ValueError
         If the landmarks are malformed, or the mapper gives something else than 68 finite points.
     """
-    drawn = landmark_array(landmarks)
+    drawn = ibug_landmarks(landmarks, scheme)
     mapper = PartMapper(source.model) if mapper is None else mapper
     points, context = mapper.to_normal(drawn)
     points = _checked(points, "to_normal")

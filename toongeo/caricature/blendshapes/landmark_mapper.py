@@ -1,4 +1,7 @@
-"""From the landmarks of a drawing to those of a normal face and back, without a network."""
+"""From the landmarks of a drawing to those of a normal face and back, without a network.
+
+Constants were judged on faces of the deformation space and four pictures (``benchmarks/caricature_expressions.py``).
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,7 @@ from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS, PARTS
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline import PriorOptions
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
@@ -23,14 +27,14 @@ from toongeo.pipeline.fit.fit_options import FitOptions
 __all__ = ["Exaggeration", "PartMapper"]
 
 # A face as exaggerated as the drawing asks for: a large identity is cheap, a misfit is not.
-_FREE = FitOptions(max_deviation=12.0, identity_weight=0.05, expression_weight=4.0, prior_weight=1e-6)
+_FREE = FitOptions(prior_weight=1e-6, prior=PriorOptions(max_deviation=12.0, identity_weight=0.05))
 _SPREAD = 2.0  # standard deviation of the identities of caricatures
 _STIFFNESS = 0.3  # pulls a part's affine frame towards a similarity
 _CHIN = 4.0  # jaw points from the chin over which the jaw follows the mouth
 _SHARE = 0.5  # power of a part's growth beside the whole face's that its motions take: room grows less than parts
 _ROOM = 0.5  # of the share of the area between parts that an expression leaves in the normal face
 _SLIVER = 0.1  # height to length below which a triangle tells nothing about room
-_SHARES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5
+_SHARES = 1.0, 0.9, 0.8, 0.7, 0.6, 0.5  # of the motion, tried in turn until enough room is left
 
 
 @dataclass(frozen=True, eq=False)

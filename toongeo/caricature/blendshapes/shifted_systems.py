@@ -10,8 +10,8 @@ from toongeo.geometry.operators.factor import factor_spd, solve
 
 __all__ = ["shifted_solutions"]
 
-_TOLERANCE = 1e-10
-_ROUNDS = 60
+_TOLERANCE = 1e-10  # of the residual against the right-hand side
+_ROUNDS = 60  # of conjugate gradients at most
 _FLOOR = 1e-11  # of the mean diagonal entry: added to all, so that what nothing holds stays at rest
 
 

@@ -1,4 +1,7 @@
-"""The expression of a face whose identity may be exaggerated."""
+"""The expression of a face whose identity may be exaggerated.
+
+Constants were judged on faces of the deformation space and four pictures (``benchmarks/caricature_expressions.py``).
+"""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ __all__ = ["WeightFit", "WeightProblem"]
 
 _TOLERANCE = 1e-6  # relative fall of the energy below which a step was the last
 _FIRST_DAMPING = 1e-4  # of the diagonal of the Gauss-Newton matrix
-_MOST_DAMPING = 1e8
+_MOST_DAMPING = 1e8  # where a step no longer moves anything
 _TWICE = packed(np.full((3, 3, 1), 2.0) - np.eye(3)[:, :, None])  # how often each of the six numbers stands in S
 
 

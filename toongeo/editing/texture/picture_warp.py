@@ -1,4 +1,7 @@
-"""A picture redrawn with its face moved."""
+"""A picture redrawn with its face moved.
+
+Constants were judged on the seven examples (``benchmarks/editing.py``).
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -105,11 +108,11 @@ class PictureWarp:
             return _softened(outer, carried)
         rows = _bounds(inner, margin=2)
         motion = np.where(np.abs(motion) < _STILL, 0, motion)[rows]
-        trust = share[rows] * self._sampled(motion, self.interior, rows)[..., None]
+        confidence = share[rows] * self._sampled(motion, self.interior, rows)[..., None]
         within = np.where(inner[rows][..., None], _remap(texture, uv[rows], cv2.INTER_LINEAR), 0)
         drawn = self._sampled(motion, self.picture, rows)
-        within = self._eyes_completed(within, drawn, (label == EYE)[rows], trust[..., 0])
-        within += trust * (drawn - within)
+        within = self._eyes_completed(within, drawn, (label == EYE)[rows], confidence[..., 0])
+        within += confidence * (drawn - within)
         # Colours of the inside reach a little under the rim, so that its edge can be soft.
         within = spread_field(within, inner[rows])
         over = rim_cover(label, self.lines)[rows][..., None]
@@ -130,9 +133,11 @@ class PictureWarp:
             image = image + (stroke.strength / 255 * cover * self.freedom)[..., None] * (stroke.colour - image)
         return image
 
-    def _eyes_completed(self, painted: np.ndarray, drawn: np.ndarray, eye: np.ndarray, trust: np.ndarray) -> np.ndarray:
+    def _eyes_completed(
+        self, painted: np.ndarray, drawn: np.ndarray, eye: np.ndarray, confidence: np.ndarray
+    ) -> np.ndarray:
         """Colours of eyes where they come into view: those of what is seen beside it, farther off the texture's."""
-        seen = eye & (trust > 0.99)
+        seen = eye & (confidence > 0.99)
         if not seen.any():
             return painted
         away = cv2.distanceTransform((~seen).astype(np.uint8), cv2.DIST_L2, 5)

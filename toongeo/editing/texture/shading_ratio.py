@@ -1,4 +1,7 @@
-"""How much brighter or darker skin becomes as it turns in the light of the picture."""
+"""How much brighter or darker skin becomes as it turns in the light of the picture.
+
+Constants were judged on the seven examples (``benchmarks/editing.py``).
+"""
 
 import numpy as np
 

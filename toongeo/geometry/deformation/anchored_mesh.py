@@ -14,7 +14,7 @@ from toongeo.geometry.operators.components import components
 from toongeo.geometry.operators.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.operators.uniform_laplacian import uniform_laplacian
 from toongeo.geometry.rotations.ring_rotations import ring_rotations
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
 
 __all__ = [
     "AnchoredMesh",
@@ -87,8 +87,8 @@ class AnchoredMesh:
 
 
 def anchored_mesh(
-    V: ArrayLike,
-    F: ArrayLike,
+    V: MeshLike,
+    F: ArrayLike | None,
     anchors: ArrayLike,
     weight: ArrayLike,
     laplacian: str,

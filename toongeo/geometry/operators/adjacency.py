@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import igl
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
+
+from toongeo.arrays import Integers
 
 __all__ = ["adjacency"]
 
 
-def adjacency(F: NDArray[np.int64], n: int) -> sp.csr_matrix:
+def adjacency(F: Integers, n: int) -> sp.csr_matrix:
     """Symmetric 0/1 matrix of the edges of a mesh.
 
     Parameters
@@ -32,8 +34,10 @@ def adjacency(F: NDArray[np.int64], n: int) -> sp.csr_matrix:
            [1., 1., 0., 0.],
            [0., 0., 0., 0.]])
     """
-    i, j = F.ravel(), np.roll(F, -1, axis=1).ravel()
-    i, j = i[i != j], j[i != j]
-    A = sp.csr_matrix((np.ones(2 * len(i)), (np.concatenate([i, j]), np.concatenate([j, i]))), shape=(n, n))
-    A.data[:] = 1.0  # an edge of two triangles was summed
+    A = igl.adjacency_matrix(F)  # of integers, with as many rows as F speaks of; symmetric, so its columns are rows
+    A = sp.csr_matrix((np.ones(A.nnz), A.indices, A.indptr), shape=A.shape)
+    loops = A.diagonal()
+    if loops.any():
+        A = sp.csr_matrix(A - sp.diags_array(loops))
+    A.resize(n, n)
     return A

@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
+import igl
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from toongeo.geometry.operators.cross import cross
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.arrays import Floats, Integers
+from toongeo.geometry.validate_mesh import MeshLike, degenerate_triangles, validate_mesh
 
 __all__ = ["cotangent_laplacian"]
 
 
-def cotangent_laplacian(V: ArrayLike, F: ArrayLike, *, clamp: float | None = None) -> sp.csr_matrix:
+def cotangent_laplacian(V: MeshLike, F: ArrayLike | None, *, clamp: float | None = None) -> sp.csr_matrix:
     """Positive semi-definite cotangent Laplacian: ``x^T C x = integral |grad x|^2``.
 
     Off-diagonal ``C_ij = -w_ij`` with ``w_ij = (cot a_ij + cot b_ij) / 2`` of the angles that face the
-    edge; the diagonal makes every row sum to zero. (libigl's ``cotmatrix`` has the other sign.)
+    edge; the diagonal makes every row sum to zero. It is built by libigl's ``cotmatrix``, which has the other sign.
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Vertices. The result does not depend on the unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles.
     clamp : float in (0, 1], optional
         Bring every edge weight into ``[clamp, 1 / clamp]``. Then all off-diagonals are negative (rings
@@ -52,30 +53,48 @@ def cotangent_laplacian(V: ArrayLike, F: ArrayLike, *, clamp: float | None = Non
     if clamp is not None and not 0 < clamp <= 1:
         raise ValueError(f"clamp: expected a number in (0, 1] or None, got {clamp}")
     V, F = validate_mesh(V, F, nondegenerate=clamp is None)
-    n = len(V)
-    W = _edge_weights(V, F, n)
-    if clamp is not None:
-        W.data = np.clip(W.data, clamp, 1 / clamp)
-    return sp.csr_matrix(sp.diags_array(W.sum(axis=1).A1) - W)
+    C = _rows(igl.cotmatrix(V, F))
+    if clamp is None:
+        C.data *= -1
+        return C
+    if not np.isfinite(C.data).all():  # one triangle without area is enough
+        flat = degenerate_triangles(V, F)
+        C = _with_flat(_rows(igl.cotmatrix(V, F[~flat])), V, F[flat])
+    return _clamped(C, clamp)
 
 
-def _edge_weights(V: NDArray[np.float64], F: NDArray[np.int64], n: int) -> sp.csr_matrix:
-    """Symmetric (n, n) matrix of the half sums of cotangents, every edge stored even where they cancel."""
+def _rows(C: sp.csc_matrix) -> sp.csr_matrix:
+    """A symmetric matrix by rows, without a copy."""
+    return sp.csr_matrix((C.data, C.indices, C.indptr), shape=C.shape)
+
+
+def _clamped(C: sp.csr_matrix, clamp: float) -> sp.csr_matrix:
+    """libigl's matrix with weights within bounds, the diagonal that belongs to them, and our sign."""
+    row = np.repeat(np.arange(C.shape[0]), np.diff(C.indptr))
+    diagonal = C.indices == row
+    weight = np.clip(C.data, clamp, 1 / clamp)
+    weight[diagonal] = 0.0
+    total = np.bincount(row, weight, minlength=C.shape[0])
+    data = np.negative(weight, out=weight)
+    data[diagonal] = total[row[diagonal]]
+    return sp.csr_matrix((data, C.indices, C.indptr), shape=C.shape)
+
+
+def _with_flat(C: sp.csr_matrix, V: Floats, F: Integers) -> sp.csr_matrix:
+    """Add the edges of triangles without area; what stands on the diagonal is not looked at."""
     X, corners = np.ascontiguousarray(V.T), np.ascontiguousarray(F.T)
     x = [X[:, corner] for corner in corners]
-    rows, columns, weights = [], [], []
+    C = C.tocoo()
+    rows, columns, weights = [C.row], [C.col], [C.data]
     for k in range(3):
         tip, i, j = k, (k + 1) % 3, (k + 2) % 3
-        u, v = x[i] - x[tip], x[j] - x[tip]
-        twice_area = np.sqrt((cross(u, v) ** 2).sum(axis=0))
-        dot = (u * v).sum(axis=0)
-        # A flat angle has cotangent +-infinity, bounded here because infinities of two triangles must not
-        # cancel to NaN; coincident corners have no angle and give zero.
-        angle = twice_area > 1e-12 * np.abs(dot)
-        cotangent = np.divide(dot, twice_area, out=np.sign(dot) * 1e12, where=angle)
+        # A flat angle has cotangent +-infinity, bounded here because infinities of two triangles must not cancel to
+        # NaN; coincident corners have no angle and give zero.
+        half = 0.5e12 * np.sign(((x[i] - x[tip]) * (x[j] - x[tip])).sum(axis=0))
         edge = corners[i] != corners[j]
-        rows += [corners[i][edge], corners[j][edge]]
-        columns += [corners[j][edge], corners[i][edge]]
-        weights += [0.5 * cotangent[edge]] * 2
+        rows += [corners[i][edge], corners[j][edge], corners[i][edge]]
+        columns += [corners[j][edge], corners[i][edge], corners[i][edge]]
+        weights += [half[edge], half[edge], np.zeros(edge.sum())]
+    # Zeros stay, unlike in a sum of matrices: an edge whose weights cancel is one all the same.
     entries = np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns))
-    return sp.csr_matrix(entries, shape=(n, n))
+    return sp.csr_matrix(entries, shape=C.shape)

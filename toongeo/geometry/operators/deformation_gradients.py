@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.geometry.operators.one_rings import one_rings
-from toongeo.geometry.validate_mesh import validate_vertices
+from toongeo.geometry.validate_mesh import MeshLike, validate_vertices
 
 __all__ = ["deformation_gradients"]
 
 
-def deformation_gradients(V: ArrayLike, F: ArrayLike, P: ArrayLike) -> NDArray[np.float64]:
+def deformation_gradients(V: MeshLike, F: ArrayLike | None, P: ArrayLike) -> NDArray[np.float64]:
     """Affine matrix of each vertex's one-ring from a reference mesh to a deformed one.
 
     ``T_i`` minimizes ``sum_j c_ij |e'_ij - T_i e_ij|^2`` with cotangent weights of the reference (Eq. 1), brought
@@ -23,9 +23,9 @@ def deformation_gradients(V: ArrayLike, F: ArrayLike, P: ArrayLike) -> NDArray[n
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Vertices of the reference.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles.
     P : (n, 3) float
         Deformed vertices, in the unit and frame of the reference.

@@ -12,7 +12,7 @@ from toongeo._read_only import read_only
 from toongeo.arrays import Floats
 from toongeo.geometry.operators.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.operators.small_matrices import product
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
 
 __all__ = ["OneRings", "one_rings"]
 
@@ -94,14 +94,14 @@ class OneRings:
         D[:, :, self.flat] = flat + change[:, None] * u
 
 
-def one_rings(V: ArrayLike, F: ArrayLike) -> OneRings:
+def one_rings(V: MeshLike, F: ArrayLike | None) -> OneRings:
     """Gather the one-rings of a reference mesh, with cotangent weights brought into [0.01, 100].
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Vertices, any unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles.
 
     Returns

@@ -45,6 +45,6 @@ def uniform_laplacian(F: ArrayLike, n: int) -> sp.csr_matrix:
     """
     A = adjacency(validate_faces(F, n), n)
     valence = np.diff(A.indptr)
-    scale = sp.diags_array(1.0 / np.maximum(valence, 1))
     # Eq. 9: L(v_i) = 1/|N(v_i)| sum_j (v_i - v_j)
-    return sp.csr_matrix(sp.diags_array((valence > 0).astype(float)) - scale @ A)
+    A.data = np.repeat(1.0 / np.maximum(valence, 1), valence)
+    return sp.csr_matrix(sp.diags_array((valence > 0).astype(float)) - A)

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+import igl
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from toongeo.geometry.operators.cross import cross
-from toongeo.geometry.validate_mesh import validate_mesh
+from toongeo.arrays import Floats
+from toongeo.geometry.validate_mesh import MeshLike, validate_mesh
 
 __all__ = ["vertex_normals"]
 
 
-def vertex_normals(V: ArrayLike, F: ArrayLike) -> NDArray[np.float64]:
+def vertex_normals(V: MeshLike, F: ArrayLike | None) -> Floats:
     """Unit vertex normals: the sum of the cross products of the triangles around, normalised.
 
     Parameters
     ----------
-    V : (n, 3) float
+    V : (n, 3) float, or trimesh.Trimesh
         Vertices, any unit.
-    F : (m, 3) int
+    F : (m, 3) int, or None with a Trimesh
         Triangles, counter-clockwise from outside.
 
     Returns
@@ -38,12 +39,6 @@ def vertex_normals(V: ArrayLike, F: ArrayLike) -> NDArray[np.float64]:
     array([0., 0., 1.])
     """
     V, F = validate_mesh(V, F)
-    # Coordinates as rows: gathers and products then run over contiguous memory.
-    X = np.ascontiguousarray(V.T)
-    corners = np.ascontiguousarray(F.T)
-    a, b, c = (X[:, corner] for corner in corners)
-    area = cross(b - a, c - a)
-    flat, thrice = corners.ravel(), np.concatenate([area, area, area], axis=1)
-    total = np.stack([np.bincount(flat, weights=row, minlength=len(V)) for row in thrice], axis=1)
-    length = np.linalg.norm(total, axis=1, keepdims=True)
-    return np.divide(total, length, out=np.zeros_like(total), where=length > 0)
+    normals = igl.per_vertex_normals(V, F, igl.PER_VERTEX_NORMALS_WEIGHTING_TYPE_AREA)
+    # libigl divides by the length without looking at it.
+    return np.nan_to_num(normals, copy=False, nan=0.0)

@@ -53,11 +53,11 @@ class ThinShell:
         sought = np.flatnonzero(fitted)
         for number, level in enumerate(levels):
             stride = _THINNED if number < len(levels) - 2 else 1
-            trust = level / levels[0]  # in the end surfaces decide: two annotators do not mark quite the same points
-            rest, smooth = X, level * self.energy + self.stay + trust * self.landmarks
+            share = level / levels[0]  # in the end surfaces decide: two annotators do not mark quite the same points
+            rest, smooth = X, level * self.energy + self.stay + share * self.landmarks
             mean_pull = (1 + 2 * _SLIDING) / 3
             factor = factor_spd(smooth + mean_pull * sp.diags_array(self.area * fitted))
-            to_points = trust * self.pull @ (points - self.at @ rest)
+            to_points = share * self.pull @ (points - self.at @ rest)
             for _ in range(iterations):
                 before = X
                 X = rest + self._displacement(surface, X, rest, sought[::stride], stride, smooth, factor, to_points)

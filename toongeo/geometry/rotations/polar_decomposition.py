@@ -11,7 +11,7 @@ from toongeo.geometry.operators.small_matrices import product
 __all__ = ["polar_decomposition"]
 
 _CHUNK = 16384  # matrices at a time: few enough for the cache, enough to make the calls cheap
-_STEPS = 3
+_STEPS = 3  # of the iteration for all matrices; those that need more go on alone
 _CONVERGED = 1e-7  # excess of the determinant before the last step; the error after it is its square
 _SINGULAR = 1e-3  # determinant over the cubed norm, below which Newton's iteration gets slow or lost
 

@@ -18,8 +18,10 @@ __all__ = ["read_landmarks"]
 EXACT = Context(prec=1100)
 
 
-def read_landmarks(path: str | os.PathLike[str], *, one_based: bool | None = None) -> NDArray[np.float64]:
-    """Read 68 landmarks in iBUG order.
+def read_landmarks(
+    path: str | os.PathLike[str], *, one_based: bool | None = None, scheme: str = "ibug68"
+) -> NDArray[np.float64]:
+    """Read landmarks: 68 in iBUG order, or those of another scheme.
 
     Parameters
     ----------
@@ -30,10 +32,13 @@ def read_landmarks(path: str | os.PathLike[str], *, one_based: bool | None = Non
         is a missing point.
     one_based
         Whether 1 must be subtracted; None: as the format has it.
+    scheme : str
+        Of another than ``"ibug68"`` the points (k, 2) are given back as they are: functions with ``scheme=`` check
+        them.
 
     Returns
     -------
-    (68, 2) float64
+    (68, 2) or (k, 2) float64
         Pixels: x right, y down, integer = centre of a pixel, the first pixel is 0. Missing points are NaN
         rows.
 
@@ -62,7 +67,7 @@ def read_landmarks(path: str | os.PathLike[str], *, one_based: bool | None = Non
         points = (_read_npy(path) if suffix == ".npy" else _read_json(path)) - shift
     else:
         points = _read_lines(path, shift)
-    return landmark_array(points, f"landmarks in {path}")
+    return landmark_array(points, f"landmarks in {path}") if scheme == "ibug68" else points
 
 
 def _read_npy(path: Path) -> NDArray[np.float64]:

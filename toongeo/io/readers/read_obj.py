@@ -1,15 +1,16 @@
 """A Wavefront OBJ file, its vertices in their order."""
 
 import os
-from dataclasses import dataclass
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats, Integers
 
 __all__ = ["ObjData", "read_obj"]
-
-_Corners = list[tuple[int, int]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,14 +33,14 @@ class ObjData:
         (m,) into ``objects``.
     """
 
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
-    uv: NDArray[np.float64]
-    uv_faces: NDArray[np.int64]
+    vertices: Floats
+    faces: Integers
+    uv: Floats
+    uv_faces: Integers
     objects: tuple[str, ...]
-    face_object: NDArray[np.int64]
+    face_object: Integers
 
-    def triangles(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    def triangles(self) -> tuple[Integers, Integers, Integers]:
         """Each polygon as a fan about its first corner.
 
         Returns
@@ -79,71 +80,119 @@ def read_obj(path: str | os.PathLike[str]) -> ObjData:
     ValueError
         If a line cannot be understood (says which), an index is out of range, or there is no face.
     """
-    vertices: list[list[float]] = []
-    uv: list[list[float]] = []
-    polygons: list[_Corners] = []
-    objects: list[str] = []
-    owner: list[int] = []
     # Bytes that are not UTF-8 occur in names and comments of old files, where they do no harm.
     text = Path(path).read_text(encoding="utf-8", errors="replace").replace("\\\n", " ")
-    for number, line in enumerate(text.splitlines(), start=1):
+    lines = text.splitlines()
+    found = {"v": _Rows(3), "vt": _Rows(2), "f": _Rows(sys.maxsize)}
+    named: list[int] = []
+    names: list[str] = []
+    for number, line in enumerate(lines):
         words = line.split()
-        keyword = words[0] if words else ""
-        try:
-            if keyword == "v":
-                vertices.append(_numbers(words[1:4], 3))
-            elif keyword == "vt":
-                uv.append(_numbers(words[1:3], 2))
-            elif keyword == "f":
-                polygons.append(_corners(words[1:], len(vertices), len(uv)))
-                objects = objects or [""]
-                owner.append(len(objects) - 1)
-            elif keyword in ("o", "g"):
-                objects.append(" ".join(words[1:]))
-        except ValueError as error:
-            raise ValueError(f"path: line {number} of {path} is {line.strip()[:60]!r}: {error}") from error
-    if not polygons:
+        keyword = words.pop(0) if words else ""
+        if keyword in found:
+            rows = found[keyword]
+            del words[rows.most :]
+            rows.at.append(number)
+            rows.sizes.append(len(words))
+            rows.words += words
+        elif keyword in ("o", "g"):
+            named.append(number)
+            names.append(" ".join(words))
+    polygons = found["f"]
+    try:
+        vertices, uv = _numbers(found["v"]), _numbers(found["vt"])
+        faces, uv_faces = _polygons(polygons, found["v"].at, found["vt"].at)
+    except _LineError as error:
+        line = lines[error.line].strip()[:60]
+        raise ValueError(f"path: line {error.line + 1} of {path} is {line!r}: {error}") from error
+    if not len(faces):
         raise ValueError(f"path: expected an OBJ with faces, got none in {path}")
-    return ObjData(
-        vertices=np.array(vertices).reshape(-1, 3),
-        faces=_padded(polygons, 0),
-        uv=np.array(uv).reshape(-1, 2),
-        uv_faces=_padded(polygons, 1),
-        objects=tuple(objects),
-        face_object=np.array(owner),
-    )
+    face_object = np.searchsorted(named, polygons.at) - 1
+    if face_object[0] < 0:  # faces before the first name
+        names, face_object = ["", *names], face_object + 1
+    return ObjData(vertices, faces, uv, uv_faces, tuple(names), face_object)
 
 
-def _numbers(words: list[str], count: int) -> list[float]:
-    values = [float(word) for word in words]
-    if len(values) != count or not np.isfinite(values).all():
-        raise ValueError(f"expected {count} finite numbers")
-    return values
+@dataclass
+class _Rows:
+    """All lines of one keyword: their numbers, how many words each has after it, and all these words in one list.
+
+    Texts are turned into numbers all at once: a call for each line, or a list kept for each, takes twice as long.
+    """
+
+    most: int  # words that count; what follows them (a colour, a third coordinate of uv) is dropped
+    at: list[int] = field(default_factory=list)
+    sizes: list[int] = field(default_factory=list)
+    words: list[str] = field(default_factory=list)
 
 
-def _corners(words: list[str], vertices: int, uv: int) -> _Corners:
-    """(vertex, uv) of each corner, 0-based, uv -1 if it has none."""
-    if len(words) < 3:
-        raise ValueError(f"expected at least 3 corners, got {len(words)}")
-    corners = []
-    for word in words:
-        parts = word.split("/")
-        second = parts[1] if len(parts) > 1 else ""
-        corners.append((_index(parts[0], vertices), _index(second, uv) if second else -1))
-    return corners
+class _LineError(ValueError):
+    """What is wrong with which line, 0-based."""
+
+    def __init__(self, line: int, reason: object) -> None:
+        super().__init__(str(reason))
+        self.line = int(line)
 
 
-def _index(word: str, count: int) -> int:
-    """0-based; a negative number counts from the latest element."""
-    given = int(word)
-    index = given - 1 if given > 0 else count + given
-    if given == 0 or not 0 <= index < count:
-        raise ValueError(f"index {given} is out of range, {count} elements so far")
-    return index
+def _numbers(rows: _Rows) -> Floats:
+    """The numbers (n, most) of all lines."""
+    short = np.array(rows.sizes, dtype=np.int64) != rows.most
+    if short.any():
+        raise _LineError(rows.at[short.argmax()], f"expected {rows.most} finite numbers")
+    line = np.repeat(rows.at, rows.sizes)
+    values = np.array(_each(float, rows.words, line, np.arange(len(line))), dtype=np.float64)
+    finite = np.isfinite(values)
+    if not finite.all():
+        raise _LineError(line[finite.argmin()], f"expected {rows.most} finite numbers")
+    return values.reshape(-1, rows.most)
 
 
-def _padded(polygons: list[_Corners], column: int) -> NDArray[np.int64]:
-    lengths = np.array([len(polygon) for polygon in polygons])
-    padded = np.full((len(polygons), lengths.max()), -1, dtype=np.int64)
-    padded[np.arange(lengths.max()) < lengths[:, None]] = [c[column] for polygon in polygons for c in polygon]
-    return padded
+def _polygons(rows: _Rows, vertices: list[int], uv: list[int]) -> tuple[Integers, Integers]:
+    """Corners (m, k) into vertices and into uv, which stand in these lines; -1 where there is none."""
+    sizes = np.array(rows.sizes, dtype=np.int64)
+    if (sizes < 3).any():
+        first = (sizes < 3).argmax()
+        raise _LineError(rows.at[first], f"expected at least 3 corners, got {sizes[first]}")
+    # A corner comes again in every polygon around it: each text is read once.
+    texts = {text: k for k, text in enumerate(dict.fromkeys(rows.words))}
+    corner = np.array([texts[word] for word in rows.words], dtype=np.int64)
+    parts = [text.split("/", 2) for text in texts]
+    inside = np.arange(sizes.max(initial=3)) < sizes[:, None]
+    padded = np.full((2, *inside.shape), -1, dtype=np.int64)
+    padded[0, inside] = _indices([part[0] for part in parts], corner, rows, vertices)
+    padded[1, inside] = _indices([part[1] if any(part[1:2]) else None for part in parts], corner, rows, uv)
+    return padded[0], padded[1]
+
+
+def _indices(texts: Sequence[str | None], corner: Integers, rows: _Rows, elements: list[int]) -> Integers:
+    """0-based index at every corner, of which `corner` tells the text; elements are the lines that it counts.
+
+    -1 where there is none.
+    """
+    line = np.repeat(rows.at, rows.sizes)
+    given = np.array(_each(_whole, ["1" if text is None else text for text in texts], line, corner))[corner]
+    absent = np.array([text is None for text in texts], dtype=bool)[corner]
+    so_far = np.searchsorted(elements, rows.at).repeat(rows.sizes)
+    index = np.where(given > 0, given - 1, so_far + given)  # a negative number counts from the latest so far
+    wrong = ~absent & ((given == 0) | (index < 0) | (index >= so_far))
+    if wrong.any():
+        first = wrong.argmax()
+        raise _LineError(line[first], f"index {texts[corner[first]]} is out of range, {so_far[first]} elements so far")
+    return np.where(absent, -1, index).astype(np.int64)
+
+
+def _whole(text: str) -> float:
+    return float(int(text))  # exact as far as any file counts, and no number is too large for an array of them
+
+
+def _each(number: Callable[[str], float], texts: list[str], line: Integers, place: Integers) -> list[float]:
+    """Every text as a number; the words of the file stand in these lines, and `place` tells the text of each."""
+    try:
+        return list(map(number, texts))
+    except (ValueError, OverflowError):
+        for k, text in enumerate(texts):
+            try:
+                number(text)
+            except (ValueError, OverflowError) as error:
+                raise _LineError(line[(place == k).argmax()], error) from error
+        raise

@@ -40,6 +40,11 @@ class LidRings:
         return np.union1d(self.upper, self.lower)
 
 
+def lids_of(side: str) -> tuple[str, ...]:
+    """What a model must have for :func:`lid_rings` of the "left" or "right" eye."""
+    return "quads", f"eye_{side}", f"socket_{side}"
+
+
 @lru_cache(maxsize=8)
 def lid_rings(model: MorphableModel, side: str) -> LidRings:
     """Rings of the lids of the "left" or "right" eye.

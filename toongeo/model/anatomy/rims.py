@@ -27,9 +27,13 @@ def rim_path(model: MorphableModel, name: str) -> np.ndarray:
 
 @lru_cache(maxsize=4)
 def rim_paths(model: MorphableModel) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """For each rim its vertices from corner to corner, and where on that path its landmarks are."""
-    parts = ("mouth", "eye_left", "eye_right", "lips")
-    near = np.any([model.regions[name] for name in parts if name in model.regions], axis=0)
+    """For each rim its vertices from corner to corner, and where on that path its landmarks are.
+
+    Between two landmarks that no edges join there is nothing.
+    """
+    near = np.any([model.region(name) for name in ("mouth", "eye_left", "eye_right", "lips")], axis=0)
+    if not model.has("mouth", "eye_left", "eye_right"):
+        near |= True
     A = adjacency(model.faces, len(model.mean)).tocoo()
     inside = near[A.row] & near[A.col]
     i, j = A.row[inside], A.col[inside]
@@ -42,7 +46,8 @@ def rim_paths(model: MorphableModel) -> dict[str, tuple[np.ndarray, np.ndarray]]
             _, previous = dijkstra(lengths, indices=int(model.landmarks[a]), return_predecessors=True)
             leg = [int(model.landmarks[b])]
             while leg[-1] != model.landmarks[a]:
-                leg.append(int(previous[leg[-1]]))
+                before = int(previous[leg[-1]])
+                leg.append(before if before >= 0 else int(model.landmarks[a]))
             path += leg[-2::-1]
             knots.append(len(path) - 1)
         paths[name] = np.array(path), np.array(knots)

@@ -23,7 +23,7 @@ def still_vertices(model: MorphableModel) -> np.ndarray:
     >>> bool(model.region("scalp")[still].any()), bool(model.region("lips")[still].any())
     (True, False)
     """
-    motion = np.abs(model.expression[: model.n_named]).max(axis=(0, 2))
+    motion = np.abs(model.expression[: model.n_named]).max(axis=(0, 2), initial=0.0)
     still = np.flatnonzero(motion < _MOVES_MM)
     still.setflags(write=False)
     return still

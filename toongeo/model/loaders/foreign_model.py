@@ -8,15 +8,10 @@ from scipy.spatial import cKDTree
 
 from toongeo.model.ibug68 import PARTS
 
-__all__ = ["mirrored_vertices", "named_parts"]
+__all__ = ["named_parts"]
 
-_MARGIN_MM = 8.0
+_MARGIN_MM = 8.0  # around a part's landmarks
 _PARTS = {"eye_left": ("eye_left",), "eye_right": ("eye_right",), "mouth": ("mouth",), "nose": ("nose",)}
-
-
-def mirrored_vertices(mean: NDArray[np.float64]) -> NDArray[np.int64]:
-    """For every vertex (n,) the one nearest to its mirror image; on a symmetric mesh it is the image."""
-    return np.asarray(cKDTree(mean).query(mean * [-1.0, 1.0, 1.0])[1], np.int64)
 
 
 def named_parts(mean: NDArray[np.float64], landmarks: NDArray[np.int64]) -> dict[str, NDArray[np.bool_]]:

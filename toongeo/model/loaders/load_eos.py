@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.model.ibug68 import PARTS
-from toongeo.model.loaders.foreign_model import mirrored_vertices, named_parts
+from toongeo.model.loaders.foreign_model import named_parts
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["load_eos"]
@@ -17,7 +17,6 @@ __all__ = ["load_eos"]
 _VERSION = 1
 _EYE_DEPTH_MM = 13.0  # from the corners of an eye back to its centre
 _INNER_MOUTH_CORNERS = {60: 48, 64: 54}  # the published table leaves them out: the outer corners take their place
-_GREY = 0.6
 
 
 def load_eos(shape: str | Path, landmarks: str | Path, expression: str | Path | None = None) -> MorphableModel:
@@ -52,21 +51,15 @@ def load_eos(shape: str | Path, landmarks: str | Path, expression: str | Path | 
     corners = mean[[table[k] for k in (36, 39, 42, 45)]]
     mean = mean - (corners.mean(axis=0) - [0.0, 0.0, _EYE_DEPTH_MM])
     points = _jaw(mean, table)
-    everything = np.ones(len(mean), bool)
     return MorphableModel(
         mean=mean,
         faces=faces,
-        quads=np.zeros((0, 4), np.int64),
         identity=modes,
         expression=np.array(list(blendshapes.values()), np.float32).reshape(-1, len(mean), 3),
         expression_names=tuple(blendshapes),
         n_named=len(blendshapes),
-        albedo_mean=np.full((len(mean), 3), _GREY, np.float32),
-        albedo=np.zeros((0, len(mean), 3), np.float32),
         landmarks=points,
-        contour_lines=tuple(points[k : k + 1] for k in PARTS["jaw"]),
-        regions={"skin": everything, "face": everything, **named_parts(mean, points)},
-        mirror=mirrored_vertices(mean),
+        regions=named_parts(mean, points),
         uv=uv,
         uv_faces=faces,
     )

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.ibug68 import PARTS
-from toongeo.model.loaders.foreign_model import mirrored_vertices, named_parts
+from toongeo.model.loaders.foreign_model import named_parts
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["load_ict_facekit"]
@@ -16,7 +15,6 @@ __all__ = ["load_ict_facekit"]
 _MM = 10.0  # the file is in centimetres
 _N_SKIN, _N_NARROW, _N_FACE = 11248, 6706, 9409  # the vertex order of the topology: narrow face, face, head and neck
 _EYEBALLS = slice(21451, 23021), slice(23021, 24591)  # left, right
-_GREY = 0.6
 
 
 def load_ict_facekit(path: str | Path) -> MorphableModel:
@@ -24,7 +22,8 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
 
     The frame becomes that of this library: millimetres, origin midway between the eyeballs. A unit of an
     identity mode stays one standard deviation. The static vertices of the annotation are the landmarks, and
-    their jaw points do not slide. There are no eyeballs, no inside of the mouth, and the skin is grey.
+    their jaw points do not slide. Expressions bear our names: ``eyeBlink_L`` is ``eyeBlinkLeft``. There are no
+    eyeballs, no inside of the mouth, and the skin is grey.
 
     Parameters
     ----------
@@ -54,26 +53,20 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
     mean = neutral[:_N_SKIN] - origin
     faces, quads, uv_faces = _skin(z["quads"].astype(np.int64), z["quads_uv"].astype(np.int64))
     landmarks = z["landmarks68"].astype(np.int64)
-    skin = np.ones(_N_SKIN, bool)
     return MorphableModel(
         mean=mean,
         faces=faces,
         quads=quads,
         identity=_modes(z["identity_q"], z["identity_scale"]),
         expression=_modes(z["expression_q"], z["expression_scale"]),
-        expression_names=tuple(map(str, z["expression_names"])),
+        expression_names=tuple(_own_name(str(name)) for name in z["expression_names"]),
         n_named=len(z["expression_names"]),
-        albedo_mean=np.full((_N_SKIN, 3), _GREY, np.float32),
-        albedo=np.zeros((0, _N_SKIN, 3), np.float32),
         landmarks=landmarks,
-        contour_lines=tuple(landmarks[k : k + 1] for k in PARTS["jaw"]),
         regions={
-            "skin": skin,
             "narrow_face": np.arange(_N_SKIN) < _N_NARROW,
             "face": np.arange(_N_SKIN) < _N_FACE,
             **named_parts(mean, landmarks),
         },
-        mirror=mirrored_vertices(mean),
         uv=z["uv"].astype(float),
         uv_faces=uv_faces,
     )
@@ -83,6 +76,12 @@ _KEYS = {
     "neutral", "quads", "quads_uv", "uv", "identity_q", "identity_scale",
     "expression_q", "expression_scale", "expression_names", "landmarks68",
 }  # fmt: skip
+
+
+def _own_name(name: str) -> str:
+    for suffix, side in (("_L", "Left"), ("_R", "Right")):
+        name = name.removesuffix(suffix) + side if name.endswith(suffix) else name
+    return name
 
 
 def _modes(integers: NDArray[np.integer], scale: NDArray[np.float64]) -> NDArray[np.float32]:

@@ -1,4 +1,5 @@
 """The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
 from toongeo.pipeline.align.align_face import AlignedFace as AlignedFace
+from toongeo.pipeline.align.align_face import AlignReport as AlignReport
 from toongeo.pipeline.align.align_face import align_face as align_face

@@ -1,4 +1,7 @@
-"""Teeth and tongue that were carried along by a flow, as parts that do not bend."""
+"""Teeth and tongue that were carried along by a flow, as parts that do not bend.
+
+Constants were judged on the seven examples and 15 caricatures (``benchmarks/alignment.py``, ``benchmarks/lips.py``).
+"""
 
 import numpy as np
 
@@ -28,9 +31,11 @@ def straighten_teeth(model: MorphableModel, before: np.ndarray, after: np.ndarra
     Returns
     -------
     (n, 3) float64
-        ``after``, with teeth and tongue straightened.
+        ``after``, with teeth and tongue straightened, as far as the model has them.
     """
     inside = np.any([model.region(name) for name in PARTS], axis=0)
+    if not inside.any():
+        return after
     centre, arrived = before[inside].mean(0), after[inside].mean(0)
     linear, *_ = np.linalg.lstsq(before[inside] - centre, after[inside] - arrived, rcond=None)
     U, stretches, Vt = np.linalg.svd(linear)

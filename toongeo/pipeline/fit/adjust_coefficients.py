@@ -13,6 +13,7 @@ from toongeo.io.check_landmarks import check_landmarks
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.fit.landmarks.inner_error import inner_error
 from toongeo.pipeline.fit.losses.nlopt_minimize import nlopt_minimize
 from toongeo.protocols import HeadCamera
@@ -62,7 +63,13 @@ class DistanceLoss:
 
 
 def adjust_coefficients(
-    fit: FaceFit, landmarks: ArrayLike, adjust: str, *, algorithm: str = "LD_LBFGS", max_evaluations: int = 2000
+    fit: FaceFit,
+    landmarks: ArrayLike,
+    adjust: str,
+    *,
+    algorithm: str = "LD_LBFGS",
+    max_evaluations: int = 2000,
+    scheme: str = "ibug68",
 ) -> FaceFit:
     """The face of a fit bent onto the landmarks by its expression, or by identity and expression.
 
@@ -79,6 +86,8 @@ def adjust_coefficients(
     algorithm : str
         Of nlopt, by name.
     max_evaluations : int
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -97,6 +106,7 @@ def adjust_coefficients(
     started = time.perf_counter()
     if adjust not in ADJUSTMENTS:
         raise ValueError(f"adjust: expected one of {', '.join(map(repr, ADJUSTMENTS))}, got {adjust!r}")
+    landmarks = ibug_landmarks(landmarks, scheme)
     check_landmarks(landmarks)
     pixels = np.array(landmarks, np.float64)
     mean, modes = landmark_basis(fit.model).at(fit.landmark_vertices)

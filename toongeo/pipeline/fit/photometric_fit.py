@@ -12,10 +12,10 @@ from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
-from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.pipeline.fit.face_fit import FaceFit, PhotometricReport
 from toongeo.pipeline.fit.fit_options import FitOptions
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.fit.photometric.photometric_problem import PhotometricProblem
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 
@@ -30,6 +30,7 @@ def photometric_fit(
     mask: ArrayLike | None = None,
     options: PhotometricOptions | None = None,
     fit_options: FitOptions | None = None,
+    scheme: str = "ibug68",
 ) -> FaceFit:
     """Identity, expression, pose, albedo and light of a face whose landmarks were fitted.
 
@@ -56,6 +57,8 @@ def photometric_fit(
     options : PhotometricOptions, optional
     fit_options : FitOptions, optional
         Those that ``fit`` was made with.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -81,7 +84,7 @@ def photometric_fit(
     started = time.perf_counter()
     check_image(img)
     confidence = _checked_mask(mask, img.shape[:2])
-    pixels = landmark_array(landmarks)
+    pixels = ibug_landmarks(landmarks, scheme)
     check_landmarks(pixels, img.shape)
     fit_options = fit_options or FitOptions()
     if fit_options.camera != "orthographic":

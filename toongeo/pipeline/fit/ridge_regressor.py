@@ -20,7 +20,7 @@ from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["RidgeRegressor", "train_ridge_regressor"]
 
-_FEWEST = 6
+_FEWEST = 6  # points overdetermine the pose
 _IDENTITY_DEVIATION = 0.7  # of the faces it learns from, standard deviations
 _EXPRESSIONS, _STRONGEST = 4, 0.8  # named expressions at once, and their largest weight
 _YAW, _PITCH = 35.0, 15.0  # degrees

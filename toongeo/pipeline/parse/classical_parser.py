@@ -1,4 +1,7 @@
-"""A face parser without a network."""
+"""A face parser without a network.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 

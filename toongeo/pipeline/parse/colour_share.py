@@ -1,4 +1,7 @@
-"""How common colours are in one part of a picture."""
+"""How common colours are in one part of a picture.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 

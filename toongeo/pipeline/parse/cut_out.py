@@ -1,4 +1,7 @@
-"""GrabCut, from what is known, likely and unlikely."""
+"""GrabCut, from what is known, likely and unlikely.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 

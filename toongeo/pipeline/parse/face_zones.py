@@ -1,4 +1,7 @@
-"""Where landmarks and a fitted face say that the parts of a head are."""
+"""Where landmarks and a fitted face say that the parts of a head are.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 

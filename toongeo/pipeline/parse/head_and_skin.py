@@ -1,12 +1,17 @@
-"""A head cut out of its picture, and the skin cut out of the head."""
+"""A head cut out of its picture, and the skin cut out of the head.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from skimage.morphology import remove_small_holes
 
 from toongeo.arrays import Mask
 from toongeo.colour.cielab import cielab
@@ -154,10 +159,8 @@ def _one_piece(mask: Mask, core: Mask) -> Mask:
     kept[np.unique(pieces[core])] = True
     kept[0] = False
     whole = kept[pieces]
-    _, holes, stats, _ = cv2.connectedComponentsWithStats((~whole).astype(np.uint8), connectivity=4)
-    small = stats[:, cv2.CC_STAT_AREA] < 0.02 * max(int(core.sum()), 1)
-    small[0] = False
-    return whole | small[holes]
+    largest = math.ceil(0.02 * max(int(core.sum()), 1)) - 1  # below a fiftieth of the core
+    return np.asarray(remove_small_holes(whole, max_size=largest), np.bool_)
 
 
 def _trust(view: WorkingView, mask: Mask) -> NDArray[np.float32]:

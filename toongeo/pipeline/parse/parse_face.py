@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
-from toongeo.io.landmark_array import landmark_array
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.classical_parser import ClassicalParser
 from toongeo.protocols import FaceParse, FaceParser, FittedFace
 
@@ -20,6 +20,7 @@ def parse_face(
     fit: FittedFace | None = None,
     *,
     parser: FaceParser | None = None,
+    scheme: str = "ibug68",
 ) -> FaceParse:
     """Cut a picture into the parts of a face (the mask of Pan et al. 2024, sections 3.1 and 3.2).
 
@@ -33,6 +34,8 @@ def parse_face(
         The face as `fit_3dmm` found it; it is fitted to the landmarks if None.
     parser : FaceParser, optional
         Anything that is called as this function is, a network say; `ClassicalParser` if None.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -59,7 +62,7 @@ def parse_face(
     'EYE_RIGHT'
     """
     check_image(img)
-    points = landmark_array(landmarks)
+    points = ibug_landmarks(landmarks, scheme)
     check_landmarks(points, img.shape)
     parse = (parser or ClassicalParser())(img, points, fit)
     if parse.labels.shape != img.shape[:2]:

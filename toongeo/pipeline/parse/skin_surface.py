@@ -1,4 +1,7 @@
-"""The colour of skin in one picture, which changes slowly over the face."""
+"""The colour of skin in one picture, which changes slowly over the face.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The surroundings of a head, always of about the same size, in which a picture is parsed."""
+"""The surroundings of a head, always of about the same size, in which a picture is parsed.
+
+Constants were chosen by eye on the seven examples and 15 caricatures.
+"""
 
 from __future__ import annotations
 

@@ -11,3 +11,4 @@ from toongeo.pipeline.rig.foreign.rig_mesh import rig_mesh as rig_mesh
 from toongeo.pipeline.rig.mouth.fit_mouth import fit_mouth as fit_mouth
 from toongeo.pipeline.rig.neutral_face import neutral_face as neutral_face
 from toongeo.pipeline.rig.rig import Rig as Rig
+from toongeo.pipeline.rig.rig import RigReport as RigReport

@@ -7,7 +7,6 @@ import numpy as np
 
 from toongeo.geometry import vertex_normals
 from toongeo.model.anatomy.gaze import GAZE_NAMES
-from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.rig.add_rows import add_rows
 from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.rig import Rig
@@ -107,11 +106,10 @@ class Animator:
         """Unit normals (n, 3) float64 of a frame (n, 3); they cost more than the frame."""
         return vertex_normals(vertices, self.faces)
 
-    def eye_frames(self, weights: _Weights = None) -> tuple[np.ndarray, np.ndarray]:
-        """Vertices (k, 3) float64, mm, of the left and of the right eyeball; weights as for :meth:`frame`."""
+    def eye_frames(self, weights: _Weights = None) -> tuple[np.ndarray, ...]:
+        """Vertices (k, 3) float64, mm, of the left and of the right eyeball, if any; weights as for :meth:`frame`."""
         gaze = dict(zip(GAZE_NAMES, self._limited(weights)[len(self.rig.names) :].tolist(), strict=True))
-        left, right = (self.eyes.looking(side, gaze) for side in range(len(SIDES)))
-        return left, right
+        return tuple(self.eyes.looking(side, gaze) for side in range(len(self.eyes.templates)))
 
     def _limited(self, weights: _Weights) -> np.ndarray:
         beta = self.rig.weights(weights)

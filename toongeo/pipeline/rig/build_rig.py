@@ -9,11 +9,11 @@ import numpy as np
 from toongeo.geometry import DeformationTransfer
 from toongeo.geometry.source_motion import SourceMotion, source_motion
 from toongeo.model import MorphableModel
-from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.feature_gains import feature_gains
-from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.rig import Rig, RigReport
+from toongeo.pipeline.rig.split_gaze import split_gaze
 
 __all__ = ["AT_ONCE", "build_rig"]
 
@@ -39,7 +39,8 @@ def build_rig(face: AlignedFace, *, gain: float | Literal["auto"] = 1.0) -> Rig:
     Returns
     -------
     Rig
-        With the ``model.n_named`` named expressions of the model; nothing follows the gaze yet.
+        With the ``model.n_named`` named expressions of the model, which may be none. Shapes of the model that have
+        names of ``GAZE_NAMES`` are how its skin follows the gaze; of one without nothing does yet.
 
     Raises
     ------
@@ -55,23 +56,30 @@ def build_rig(face: AlignedFace, *, gain: float | Literal["auto"] = 1.0) -> Rig:
             f"face: expected vertices of shape {model.mean.shape}, one for each of its model,"
             f" got {face.vertices.shape}; another mesh has to be registered first"
         )
-    shapes = model.expression[: model.n_named]
+    deltas = _transferred(face, gain) if model.n_named else np.zeros((0, *face.vertices.shape), np.float32)
+    names, deltas, gaze = split_gaze(model.expression_names[: model.n_named], deltas)
+    return Rig(
+        names=names,
+        neutral=face.vertices,
+        deltas=deltas,
+        gaze=gaze,
+        pose=np.zeros(len(names)),
+        report=RigReport(time.perf_counter() - started),
+    )
+
+
+def _transferred(face: AlignedFace, gain: float | Literal["auto"]) -> np.ndarray:
+    """Displacements (k, n, 3) float32 of the named expressions."""
+    model = face.model
     transfer = DeformationTransfer(model.mean, model.faces, face.vertices, pinned=still_vertices(model), align=True)
-    deltas = np.empty(shapes.shape, np.float32)
+    deltas = np.empty((model.n_named, *face.vertices.shape), np.float32)
     motions = _motions(model)
-    for start in range(0, len(shapes), AT_ONCE):
+    for start in range(0, len(deltas), AT_ONCE):
         deltas[start : start + AT_ONCE] = transfer.displacements(motions[start : start + AT_ONCE])
     gains = feature_gains(model, face.vertices, deltas) if gain == "auto" else np.full(len(deltas), float(gain))
     if (gains != 1).any():
         deltas *= gains.astype(np.float32)[:, None, None]
-    return Rig(
-        names=model.expression_names[: model.n_named],
-        neutral=face.vertices,
-        deltas=deltas,
-        gaze=np.zeros((len(GAZE_NAMES), *face.vertices.shape), np.float32),
-        pose=np.zeros(model.n_named),
-        report={"seconds": time.perf_counter() - started},
-    )
+    return deltas
 
 
 @lru_cache(maxsize=4)

@@ -24,7 +24,7 @@ def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
     Returns
     -------
     (k,) float64
-        All 0 where the vertices are the neutral face.
+        All 0 where the vertices are the neutral face, or no expression moves it.
 
     Raises
     ------
@@ -33,9 +33,9 @@ def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
     """
     if vertices.shape != rig.neutral.shape:
         raise ValueError(f"vertices: expected shape {rig.neutral.shape} as the rig has, got {vertices.shape}")
-    B = np.ascontiguousarray(rig.deltas[:, where]).reshape(len(rig.names), -1)
+    B = np.ascontiguousarray(rig.deltas[:, where]).reshape(len(rig.names), 3 * np.count_nonzero(where))
     motion = (vertices - rig.neutral)[where].ravel()
-    if not motion.any():
+    if not (motion.any() and B.any()):
         return np.zeros(len(rig.names))
     with one_thread():
         gram, right = (B @ B.T).astype(np.float64), (B @ motion.astype(np.float32)).astype(np.float64)

@@ -1,4 +1,7 @@
-"""A face without the expression of its picture."""
+"""A face without the expression of its picture.
+
+Constants were judged on the seven examples (``benchmarks/rig.py``).
+"""
 
 import dataclasses
 
@@ -52,7 +55,9 @@ def neutral_face(face: AlignedFace) -> AlignedFace:
     transfer = DeformationTransfer(
         face.fit.vertices, model.faces, face.vertices, pinned=still_vertices(model), align=True
     )
-    V = _lips_as(model, fit.vertices, transfer(fit.vertices), share)
+    V = transfer(fit.vertices)
+    if model.has("mouth"):
+        V = _lips_as(model, fit.vertices, V, share)
     return dataclasses.replace(face, vertices=keep_teeth_inside(model, V), fit=fit)
 
 
@@ -85,8 +90,9 @@ def _lips_as(model: MorphableModel, rest: np.ndarray, V: np.ndarray, share: floa
     for rim, other in ((upper, lower), (lower, upper)):
         inner = rim[1:-1]  # the corners belong to both
         too_far = (_across(model, V, rim, other) - width[0] / width[1] * _across(model, rest, rim, other))[1:-1]
-        anchors.append(inner)
-        targets.append(V[inner] + 0.5 * share * too_far)
+        free = ~np.isin(inner, border)  # some are part of it where the model does not tell what lies behind the lips
+        anchors.append(inner[free])
+        targets.append(V[inner[free]] + 0.5 * share * too_far[free])
     at = np.concatenate(anchors)
     result = V.copy()
     result[used] = laplacian_align(

@@ -1,7 +1,9 @@
 """Blendshapes of one face."""
 
+import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +14,33 @@ from toongeo.model.expression_weights import expression_weights
 from toongeo.pipeline.rig.add_rows import add_rows
 from toongeo.pipeline.rig.weight_vector import weight_vector
 
-__all__ = ["Rig"]
+__all__ = ["Rig", "RigReport"]
+
+
+@dataclass(frozen=True)
+class RigReport:
+    """How a rig came out; what no stage has told is None.
+
+    Attributes
+    ----------
+    seconds : float
+        Of all stages that worked on it.
+    lips_closure : float
+        Percent: how much less the lips are apart where ``mouthClose`` seals an open jaw.
+    closure_left, closure_right : float
+        Percent of each eye that its blink closes.
+    matched, partnered, distance : float
+        Of a head that was modelled elsewhere: shares of the template's face and of its own vertices that found a
+        partner on the other, and the mean distance of those, in the head's unit.
+    """
+
+    seconds: float = 0.0
+    lips_closure: float | None = None
+    closure_left: float | None = None
+    closure_right: float | None = None
+    matched: float | None = None
+    partnered: float | None = None
+    distance: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +58,7 @@ class Rig:
         How the skin follows the eyes, for each of ``GAZE_NAMES``.
     pose : (k,) float64
         Weights of the expression that the picture shows.
-    report : dict
-        ``seconds``.
+    report : RigReport
     """
 
     names: tuple[str, ...]
@@ -39,10 +66,15 @@ class Rig:
     deltas: np.ndarray
     gaze: np.ndarray
     pose: np.ndarray
-    report: dict[str, float]
+    report: RigReport
 
     def __post_init__(self) -> None:
         read_only(self, "neutral", "deltas", "gaze", "pose")
+
+    def changed(self, started: float, **fields: Any) -> "Rig":
+        """The same rig with other fields; its report counts the seconds since ``started`` (a `perf_counter`)."""
+        report = replace(self.report, seconds=self.report.seconds + time.perf_counter() - started)
+        return replace(self, report=report, **fields)
 
     def weights(self, weights: Mapping[str, float] | np.ndarray | None = None) -> np.ndarray:
         """Checked weights (k + 8,): of the expressions, then of ``GAZE_NAMES``.
@@ -71,7 +103,7 @@ class Rig:
         beta = self.weights(weights)
         k = len(self.names)
         moved = np.zeros(self.neutral.size, np.float32)
-        add_rows(moved, self.deltas.reshape(k, -1), beta[:k])
+        add_rows(moved, self.deltas.reshape(k, moved.size), beta[:k])
         add_rows(moved, self.gaze.reshape(len(GAZE_NAMES), -1), beta[k:])
         return self.neutral + moved.reshape(self.neutral.shape)
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import deque
 from typing import Any, Literal
 
-import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import distance_transform_cdt
 
 __all__ = ["diffuse_texture"]
 
@@ -78,10 +78,10 @@ def diffuse_texture(
     work = np.float32 if img.dtype.kind == "u" else np.float64
     framed = _framed(img, mask, work)
     (_layers if order == "layers" else _sequential)(framed, mask, _PAIRS[connectivity])
-    colour = framed[1:-1, 1:-1, :-1].reshape(img.shape)
-    filled = (np.rint(colour) if img.dtype.kind == "u" else colour).astype(img.dtype)
-    known = mask if img.ndim == 2 else mask[:, :, None]
-    return np.where(known, img, filled)
+    if img.dtype.kind == "u":
+        np.rint(framed, out=framed)
+    # Known values went to a wider type and come back as they were.
+    return framed[1:-1, 1:-1, :-1].astype(img.dtype).reshape(img.shape)
 
 
 def _checked(img: ArrayLike, mask: ArrayLike) -> tuple[NDArray[Any], NDArray[np.bool_]]:
@@ -117,14 +117,11 @@ def _offsets(pairs: _Pairs, width: int) -> list[tuple[int, int]]:
 
 def _layers(framed: NDArray[Any], mask: NDArray[np.bool_], pairs: _Pairs) -> None:
     """Fill `framed` in place, all pixels of one breadth-first layer at once."""
-    # The layer of a pixel is its city-block (4) or chessboard (8) distance; the frame is unknown as well, and
-    # no way around through it is shorter.
-    unknown = np.pad(~mask, 1, constant_values=True).astype(np.uint8)
-    metric = cv2.DIST_L1 if len(pairs) == 2 else cv2.DIST_C
-    distance = cv2.distanceTransform(unknown, metric, 3)
-    unknown[[0, -1]] = unknown[:, [0, -1]] = 0
-    pixels = np.flatnonzero(unknown)
-    layer = distance.ravel()[pixels]
+    # The layer of a pixel is its distance in steps; that of the frame is 0, like that of known pixels.
+    distance = distance_transform_cdt(~mask, metric="taxicab" if len(pairs) == 2 else "chessboard")
+    distance = np.pad(distance, 1).ravel()
+    pixels = np.flatnonzero(distance)
+    layer = distance[pixels]
     layer = layer.astype(np.uint16 if layer.max() < 2**16 else np.int64)  # 16 bits are sorted by radix
     pixels = pixels[np.argsort(layer, kind="stable")]
     ends = np.cumsum(np.bincount(layer)[1:])

@@ -1,4 +1,7 @@
-"""Colours for what the picture does not show: the surface's own diffusion, hair, and the inside of the mouth."""
+"""Colours for what the picture does not show: the surface's own diffusion, hair, and the inside of the mouth.
+
+Constants were chosen by eye on the seven examples.
+"""
 
 from functools import lru_cache
 

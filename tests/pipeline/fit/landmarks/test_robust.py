@@ -49,6 +49,14 @@ def test_the_kernels_in_closed_form():
     np.testing.assert_allclose(KERNELS["geman-mcclure"](np.array([0.0, 25.0, 41.0, 73.0])), [1, 1, 1 / 4, 1 / 16])
 
 
+@pytest.mark.parametrize(("kernel", "weight"), [("huber", 2.5 / 41**0.5), ("geman-mcclure", 1 / 4)])
+def test_the_unit_is_the_deviation_that_the_median_tells(kernel, weight):
+    """Half of all 2D errors with unit variance a coordinate are longer than sqrt(2 log 2)."""
+    variance = 9.0
+    squares = variance * np.array([2 * np.log(2)] * 5 + [41.0])
+    np.testing.assert_allclose(robust_weights(squares, kernel, 0.0), [1, 1, 1, 1, 1, weight], rtol=1e-12)
+
+
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_the_scale_of_the_errors_is_their_median(kernel, rng):
     squares = rng.chisquare(2, 68)

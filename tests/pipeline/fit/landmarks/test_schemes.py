@@ -7,9 +7,10 @@ from toongeo.io import read_landmarks
 from toongeo.model import data_path
 from toongeo.model.ibug68 import INNER
 from toongeo.model.mediapipe478 import VERTICES
+from toongeo.pipeline import SolverOptions
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.fit_options import FitOptions
-from toongeo.pipeline.fit.landmarks.ibug_landmarks import PARTS_OF_IBUG, ibug_landmarks
+from toongeo.pipeline.fit.ibug_landmarks import PARTS_OF_IBUG, ibug_landmarks
 from toongeo.render import ScaledOrthographicCamera
 
 CAMERA = ScaledOrthographicCamera.look(yaw=18, pitch=-6, roll=9, size=600)
@@ -69,7 +70,7 @@ def test_an_unknown_scheme_lists_the_known_ones(points):
 
 def test_a_table_of_the_inner_vertices_is_the_scheme_of_these(artist, points):
     """Where the model does not know the noise of each landmark; up to N in Eq. 4, which the weights undo."""
-    options = FitOptions(robust=None, max_passes=1, tolerance=1e-12)
+    options = FitOptions(robust=None, solver=SolverOptions(max_passes=1, tolerance=1e-12))
     named = fit_3dmm(None, points[INNER], model=artist, scheme="ibug51", options=options)
     table = artist.landmarks[INNER]
     own = fit_3dmm(None, points[INNER], model=artist, scheme=table, options=options, landmark_weight=51 / 68)

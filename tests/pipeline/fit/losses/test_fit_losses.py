@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from toongeo.metrics import check_gradient
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.pipeline.fit.frame.unknowns import Unknowns
 from toongeo.pipeline.fit.losses.landmark_loss import LandmarkLoss
@@ -59,7 +60,7 @@ def direction(unknowns, block):
 
 @pytest.mark.parametrize("block", BLOCKS)
 @pytest.mark.parametrize("term", ["landmark", "prior", "nod", "total"])
-def test_taylor_slope(landmark_loss, unknowns, x, taylor_slope, block, term):
+def test_taylor_slope(landmark_loss, unknowns, x, block, term):
     prior = PriorLoss(unknowns, 1.3, 4.0, mean(unknowns))
     nod = PitchPrior(unknowns, landmark_loss.rotation0, 12.0)
     total = TotalLoss(landmark_loss, prior, nod, 0.7, 1e-3, 2e-3)
@@ -70,7 +71,7 @@ def test_taylor_slope(landmark_loss, unknowns, x, taylor_slope, block, term):
         assert loss(x)[1] @ d == 0
         assert loss(x + d)[0] == loss(x)[0]
     else:
-        assert taylor_slope(loss, x, d) == pytest.approx(2, abs=0.1)
+        assert check_gradient(loss, x, d).passed
 
 
 def test_eq_4_as_printed(landmark_loss, unknowns, x):

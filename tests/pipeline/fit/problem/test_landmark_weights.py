@@ -28,13 +28,13 @@ def test_seen_from_the_front_a_weight_is_the_precision_of_its_point(model):
 def test_without_known_noise_inner_points_weigh_one_and_the_jaw_as_the_options_say(artist):
     weights = weights_at(artist, 0.0)
     np.testing.assert_allclose(weights[INNER], np.broadcast_to(np.eye(2), (51, 2, 2)))
-    np.testing.assert_allclose(np.linalg.eigvalsh(weights[PARTS["jaw"]])[:, 1], FitOptions().jaw_weight)
+    np.testing.assert_allclose(np.linalg.eigvalsh(weights[PARTS["jaw"]])[:, 1], FitOptions().jaw.weight)
 
 
 def test_jaw_points_that_are_turned_away_weigh_a_tenth(artist):
     weights = np.linalg.eigvalsh(weights_at(artist, 75.0))[:, 1]  # the subject's left is out of sight
-    np.testing.assert_allclose(weights[PARTS["jaw"][:8]], FitOptions().jaw_weight)
-    np.testing.assert_allclose(weights[PARTS["jaw"][-3:]], 0.1 * FitOptions().jaw_weight)
+    np.testing.assert_allclose(weights[PARTS["jaw"][:8]], FitOptions().jaw.weight)
+    np.testing.assert_allclose(weights[PARTS["jaw"][-3:]], 0.1 * FitOptions().jaw.weight)
 
 
 def test_mirrored_poses_weigh_mirrored_points_alike(model):

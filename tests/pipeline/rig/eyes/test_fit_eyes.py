@@ -4,7 +4,7 @@ from scipy.spatial.transform import Rotation
 
 from toongeo.model.anatomy.gaze import TURN
 from toongeo.model.anatomy.lid_rings import lid_rings, opening_height
-from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_eyes
+from toongeo.pipeline import fit_eyes
 from toongeo.pipeline.rig.eyes.fit_eyes import LEAST, MOST, OFF, WANDER, _robust_sphere, _sphere, _turn
 
 AXES = np.array([[0.0, 0.0, 1.0]])
@@ -51,10 +51,9 @@ def test_the_eyeball_makes_room_for_skin(rng):
 
 
 @pytest.mark.parametrize("name", ["manga_girl", "astronaut", "beethoven"])
-def test_eyeballs_are_as_large_as_the_openings_ask_for(cartoon, name):
-    img, landmarks = cartoon(name)
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    eyes = fit_eyes(face, build_rig(face))
+def test_eyeballs_are_as_large_as_the_openings_ask_for(aligned, transferred, name):
+    face = aligned(name)
+    eyes = fit_eyes(face, transferred(name))
     for side, centre, radius in zip(("left", "right"), eyes.centres, eyes.radii, strict=True):
         rim = face.vertices[lid_rings(face.model, side).vertices]
         width = np.linalg.norm(rim[:, None] - rim, axis=2).max()

@@ -20,11 +20,9 @@ AROUND = ("browDown", "browInnerUp", "cheekSquint", "eyeBlink", "eyeSquint", "ey
 
 
 @pytest.fixture(scope="module", params=CARTOONS)
-def stages(request, cartoon):
-    img, landmarks = cartoon(request.param)
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    transferred = build_rig(face)
-    return face, transferred, *fit_lids(face, transferred)
+def stages(request, aligned, transferred):
+    face, rig = aligned(request.param), transferred(request.param)
+    return face, rig, *fit_lids(face, rig)
 
 
 @pytest.fixture(scope="module")
@@ -147,15 +145,14 @@ def test_ways_that_cross_are_made_alike(model):
 
 def test_both_eyes_are_reported_closed(stages):
     _, _, rig, _ = stages
-    assert min(rig.report["closure_left"], rig.report["closure_right"]) > 94
+    assert min(rig.report.closure_left, rig.report.closure_right) > 94
 
 
-def test_without_closing_a_tall_eye_stays_open(cartoon):
-    img, landmarks = cartoon("manga_girl")
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    rig, eyes = fit_lids(face, build_rig(face), close=False)
+def test_without_closing_a_tall_eye_stays_open(aligned, transferred):
+    face = aligned("manga_girl")
+    rig, eyes = fit_lids(face, transferred("manga_girl"), close=False)
     assert visible_eyeballs(face, rig, eyes, BLINK).min() > 0.1
-    assert max(rig.report["closure_left"], rig.report["closure_right"]) < 80
+    assert max(rig.report.closure_left, rig.report.closure_right) < 80
 
 
 def test_closure_is_the_share_of_the_opening_that_is_gone(model):
@@ -168,7 +165,7 @@ def test_closure_is_the_share_of_the_opening_that_is_gone(model):
 
 def test_an_eye_that_is_drawn_shut_stays_shut(drawn_shut):
     face, rig, eyes = drawn_shut
-    assert rig.report["closure_right"] > 90
+    assert rig.report.closure_right > 90
     assert gaps(face, rig, eyes, 1).max() <= 0.08
     assert visible_eyeballs(face, rig, eyes, BLINK)[1] <= 0.005
     blink = rig.deltas[rig.names.index("eyeBlinkRight")]
@@ -197,10 +194,8 @@ def test_only_the_surroundings_of_the_eyes_change(stages):
     np.testing.assert_array_equal(after.deltas[jaw, far], before.deltas[jaw, far])
 
 
-def test_the_same_face_gives_the_same_lids(cartoon):
-    img, landmarks = cartoon("bad_guy")
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    rig = build_rig(face)
+def test_the_same_face_gives_the_same_lids(aligned, transferred):
+    face, rig = aligned("bad_guy"), transferred("bad_guy")
     (one, eyes), (two, again) = fit_lids(face, rig), fit_lids(face, rig)
     np.testing.assert_array_equal(one.neutral, two.neutral)
     np.testing.assert_array_equal(one.deltas, two.deltas)

@@ -4,7 +4,7 @@ import pytest
 from tests.conftest import CARTOONS
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.anatomy.rims import opening_rim
-from toongeo.pipeline import align_face, build_rig, close_lids, fit_3dmm, fit_eyes, keep_lids_outside
+from toongeo.pipeline import close_lids, fit_eyes, keep_lids_outside
 from toongeo.pipeline.rig.eyes.rebuild_sockets import DEPTH, _band, _lined, rebuild_sockets
 from toongeo.pipeline.rig.eyes.seat_lids import seat_lids
 from toongeo.render import ScaledOrthographicCamera, rasterize
@@ -13,10 +13,8 @@ BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
 
 
 @pytest.fixture(scope="module", params=CARTOONS)
-def stages(request, cartoon):
-    img, landmarks = cartoon(request.param)
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    rig = build_rig(face)
+def stages(request, aligned, transferred):
+    face, rig = aligned(request.param), transferred(request.param)
     eyes = fit_eyes(face, rig)
     cleared = keep_lids_outside(face, close_lids(face, seat_lids(face, rig, eyes), eyes), eyes)
     return face, eyes, cleared, rebuild_sockets(face, cleared, eyes)

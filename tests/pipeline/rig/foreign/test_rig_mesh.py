@@ -10,6 +10,7 @@ import pytest
 from toongeo.model.anatomy.rims import rim_path
 from toongeo.model.ibug68 import INNER
 from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
+from toongeo.pipeline.rig.foreign.check_winding import check_winding
 from toongeo.pipeline.rig.foreign.close_gaps import _heights, close_gaps
 from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
 from toongeo.pipeline.rig.foreign.rig_mesh import rig_mesh
@@ -73,6 +74,7 @@ def test_the_rig_is_in_the_frame_of_the_mesh(shuffled):
     np.testing.assert_array_equal(rig.vertices(), rig.neutral)
 
 
+@pytest.mark.slow
 def test_there_and_back_all_expressions_return(model, ict):
     spec = importlib.util.spec_from_file_location("register", Path(__file__).parents[4] / "benchmarks" / "register.py")
     benchmark = importlib.util.module_from_spec(spec)
@@ -168,12 +170,24 @@ def test_bad_input_is_named(model, change, message):
         rig_mesh(**arguments)
 
 
-def test_a_head_that_is_inside_out_is_refused(model):
+def test_a_model_without_expressions_is_refused(model):
+    still = dataclasses.replace(model, n_named=0)
+    with pytest.raises(ValueError, match="model: expected one with named expressions, got one without"):
+        rig_mesh(model.mean, model.faces, model.landmarks, model=still)
+
+
+def test_a_head_that_is_inside_out_is_refused(model, monkeypatch):
     front = model.faces[model.region("face")[model.faces].all(1)]
-    with pytest.raises(ValueError, match=r"V(_target)?: expected .* triangles"):
-        rig_mesh(model.mean, front[:, ::-1], model.landmarks)
+    monkeypatch.setattr("toongeo.pipeline.rig.foreign.rig_mesh.register_face", pytest.fail)  # before the long part
+    for turned in (np.eye(3), np.diag([-1.0, 1.0, -1.0])):  # seen from the front and from behind
+        with pytest.raises(
+            ValueError, match=r"F: expected triangles counter-clockwise from outside, .* of 51 landmarks"
+        ):
+            rig_mesh(model.mean @ turned, front[:, ::-1], model.landmarks)
+        check_winding(model.mean @ turned, front, model.mean[model.landmarks] @ turned, model)
 
 
+@pytest.mark.slow
 def test_a_model_without_eyes_will_do(model):
     """A front of the face alone, rigged by a model that has no regions but the front."""
     small = dataclasses.replace(
@@ -182,4 +196,4 @@ def test_a_model_without_eyes_will_do(model):
     front = model.faces[model.region("face")[model.faces].all(1)]
     rig = rig_mesh(model.mean, front, model.landmarks, model=small)
     unused = np.setdiff1d(np.arange(len(model.mean)), front)
-    assert not rig.deltas[:, unused].any() and rig.report["partnered"] > 0.9
+    assert not rig.deltas[:, unused].any() and rig.report.partnered > 0.9

@@ -8,11 +8,12 @@ from tests.conftest import CARTOONS
 from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.metrics import mesh_quality
 from toongeo.model.anatomy.lip_line import lip_line
+from toongeo.model.anatomy.parts import TEETH_AND_TONGUE
 from toongeo.model.expression_weights import preset
-from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_mouth
+from toongeo.pipeline import fit_mouth
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
 from toongeo.pipeline.rig.mouth.close_slit import close_slit
-from toongeo.pipeline.rig.mouth.hang_teeth import PARTS, hang_teeth
+from toongeo.pipeline.rig.mouth.hang_teeth import hang_teeth
 from toongeo.pipeline.rig.mouth.seal_lips import GAP, _heights, _up, seal_lips
 from toongeo.render import ScaledOrthographicCamera, rasterize
 
@@ -21,19 +22,15 @@ MOUTH = ("mouth", "jaw", "cheekPuff", "nose", "tongue")
 
 
 @pytest.fixture(scope="module", params=CARTOONS)
-def stages(request, cartoon):
-    img, landmarks = cartoon(request.param)
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    transferred = build_rig(face)
-    return face, transferred, fit_mouth(face, transferred)
+def stages(request, aligned, transferred):
+    face, rig = aligned(request.param), transferred(request.param)
+    return face, rig, fit_mouth(face, rig)
 
 
 @pytest.fixture(scope="module")
-def closed_mouth(cartoon):
+def closed_mouth(aligned, transferred):
     """A mouth that is drawn closed, with points of the lips a little apart."""
-    img, landmarks = cartoon("moustache_man")
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    return face, build_rig(face)
+    return aligned("moustache_man"), transferred("moustache_man")
 
 
 def width(model, V):
@@ -63,7 +60,7 @@ def test_mouth_close_seals_the_lips_of_an_open_jaw(stages):
     upper, lower = dense(V[line.upper]), dense(V[line.lower])
     gap = max(cKDTree(upper).query(lower)[0].max(), cKDTree(lower).query(upper)[0].max())
     assert gap < 0.01 * width(face.model, V)
-    assert rig.report["lips_closure"] > 99
+    assert rig.report.lips_closure > 99
 
 
 @pytest.mark.parametrize("weights", [{"mouthPucker": 1.0}, preset("kiss")])
@@ -133,7 +130,8 @@ def test_nothing_comes_out_of_the_mouth_but_the_tongue(stages):
     for weights in ({}, {"jawOpen": 1.0}, SEALED, {"jawForward": 1.0}, {"mouthRollUpper": 1.0}, {"tongueOut": 1.0}):
         V = rig.vertices(weights)
         held = np.any(
-            [face.region(part) for part in PARTS if not (part == "tongue" and "tongueOut" in weights)], axis=0
+            [face.region(part) for part in TEETH_AND_TONGUE if not (part == "tongue" and "tongueOut" in weights)],
+            axis=0,
         )
         assert enclosed(face.model, V, V[held][::5]).all(), weights
 
@@ -196,12 +194,10 @@ def test_no_tooth_shows_between_closed_lips(closed_mouth, yaw):
     size, extent = 300, 1.5 * width(model, V)
     camera = ScaledOrthographicCamera.look(yaw, 0, size=size, centre=V[line.vertices].mean(0), extent=extent)
     ids = rasterize(np.column_stack([camera.project(V), camera.depth(V)]), model.faces, size, size).face_ids
-    teeth = np.any([model.region(part) for part in PARTS], axis=0)[model.faces].any(1)
+    teeth = np.any([model.region(part) for part in TEETH_AND_TONGUE], axis=0)[model.faces].any(1)
     assert not teeth[np.unique(ids[ids >= 0])].any()
 
 
-def test_an_open_mouth_stays_open(cartoon):
-    img, landmarks = cartoon("manga_girl")
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    rig = build_rig(face)
+def test_an_open_mouth_stays_open(aligned, transferred):
+    face, rig = aligned("manga_girl"), transferred("manga_girl")
     assert close_slit(face, rig) is rig

@@ -5,17 +5,16 @@ import pytest
 
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.anatomy.parts import SIDES
-from toongeo.pipeline import aim_eyes, align_face, build_rig, fit_3dmm, fit_eyes
+from toongeo.pipeline import aim_eyes, fit_eyes
 from toongeo.pipeline.texture.eyes.aim_eyes import LEAST_FRONT
 from toongeo.pipeline.texture.eyes.find_irises import Iris
 
 
 @pytest.fixture(scope="module", params=["moustache_man", "blonde_girl_threequarter"])
-def face_and_eyes(request, cartoon):
+def face_and_eyes(request, aligned, transferred):
     """From the front and from the side."""
-    img, landmarks = cartoon(request.param)
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    return face, fit_eyes(face, build_rig(face))
+    face = aligned(request.param)
+    return face, fit_eyes(face, transferred(request.param))
 
 
 def pole(eyes, side, weights):

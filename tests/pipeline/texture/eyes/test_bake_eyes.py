@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from toongeo.pipeline import aim_eyes, align_face, bake_eyes, build_rig, fit_3dmm, fit_eyes
+from toongeo.pipeline import aim_eyes, bake_eyes, fit_eyes
 from toongeo.pipeline.texture.eyes.bake_eyes import WHITE, _disc_fragments
 from toongeo.pipeline.texture.eyes.find_irises import Iris
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, EYE_RIGHT, opening_mask
@@ -9,10 +9,9 @@ from toongeo.render import sample_image, uv_to_px
 
 
 @pytest.fixture(scope="module")
-def stages(cartoon):
-    img, landmarks = cartoon("manga_girl")
-    face = align_face(fit_3dmm(img, landmarks), landmarks)
-    return img, face, fit_eyes(face, build_rig(face))
+def stages(cartoon, aligned, transferred):
+    img, face = cartoon("manga_girl")[0], aligned("manga_girl")
+    return img, face, fit_eyes(face, transferred("manga_girl"))
 
 
 @pytest.fixture(scope="module")

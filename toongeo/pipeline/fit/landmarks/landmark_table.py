@@ -15,7 +15,7 @@ from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["LandmarkTable", "landmark_table", "table_landmarks"]
 
-_FEWEST = 6
+_FEWEST = 6  # points overdetermine the pose
 
 
 @dataclass(frozen=True, eq=False)

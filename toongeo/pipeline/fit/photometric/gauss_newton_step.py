@@ -12,7 +12,7 @@ from toongeo.pipeline.fit.photometric.light_and_albedo import ReducedLoss
 
 __all__ = ["GaussNewtonStep", "gauss_newton_step"]
 
-_HALVINGS = 4
+_HALVINGS = 4  # of a step that does not lower the loss
 
 
 @dataclass(frozen=True, eq=False)

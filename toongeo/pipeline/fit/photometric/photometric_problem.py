@@ -1,4 +1,7 @@
-"""The optimisation problem of a photometric fit, and the way to its solution."""
+"""The optimisation problem of a photometric fit, and the way to its solution.
+
+Constants were chosen on rendered faces, seeds 20-29, and looked at on ten pictures (``benchmarks/photometric.py``).
+"""
 
 from __future__ import annotations
 
@@ -58,7 +61,7 @@ class PhotometricProblem:
         Geometry of the landmark fit.
     prior_weight : float
         ``w_r``.
-    trust : (k,) float
+    robust_weight : (k,) float
         Robust weights of the landmarks at the start.
     options : PhotometricOptions
     """
@@ -69,7 +72,7 @@ class PhotometricProblem:
     plane: RectifiedPicture
     start: Floats
     prior_weight: float
-    trust: Floats
+    robust_weight: Floats
     options: PhotometricOptions
 
     @classmethod
@@ -89,9 +92,9 @@ class PhotometricProblem:
         face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))
         plane = rectified_picture(img, mask, landmarks.frame, face, step=options.resolution, blur=options.blur)
         weight = fit.report.prior_weight
-        placement = PassState(fit.landmark_vertices, landmarks.trust, weight, landmarks.bounds[1])
-        trust = landmarks.renewed(placement, start, first=False).trust
-        problem = cls(fit.model, landmarks, samples, plane, start, weight, trust, options)
+        state = PassState(fit.landmark_vertices, landmarks.target.robust_weight, weight, landmarks.search.bounds[1])
+        robust_weight = landmarks.renewed(state, start, first=False).robust_weight
+        problem = cls(fit.model, landmarks, samples, plane, start, weight, robust_weight, options)
         frozen = problem.frozen(problem.z0)
         if not frozen.weights.any():
             raise ValueError("mask: expected some of the face inside the picture and the mask, got nothing")
@@ -167,7 +170,7 @@ class PhotometricProblem:
             photometric = replace(frozen, slopes=slopes, weights=frozen.weights * robust)
         photometric_weight = self._evidence(noise) * self.prior_weight
         return ReducedLoss(
-            geometry=self.landmarks.loss(self._placed(z), self.prior_weight, self.trust),
+            geometry=self.landmarks.loss(self._placed(z), self.prior_weight, self.robust_weight),
             photometric=photometric,
             penalty=penalty,
             photometric_weight=photometric_weight,
@@ -192,7 +195,7 @@ class PhotometricProblem:
         normals = vertex_normals(V, self.model.faces)[samples.vertices] @ R.T
         area = samples.area * np.where(normals[:, 2] > _GRAZING, normals[:, 2], 0.0) * visible_samples(posed, samples)
         at = posed[samples.vertices, :2]
-        weights = area * self.plane.trust(at) / max(float(area.sum()), np.finfo(float).tiny)
+        weights = area * self.plane.confidence_at(at) / max(float(area.sum()), np.finfo(float).tiny)
         rows = np.flatnonzero(weights > 0)
         return PhotometricLoss(
             unknowns=u,
@@ -215,9 +218,9 @@ class PhotometricProblem:
 
     def _bounds(self) -> tuple[Floats, Floats]:
         albedo = np.full(self.samples.albedo.shape[1], _MAX_ALBEDO)
-        lower, upper = self.landmarks.bounds
+        lower, upper = self.landmarks.search.bounds
         # Counted from -1: of a pair at rest neither is let go.
-        upper = exclusive_bounds(upper, 1 + self.start, self.landmarks.opposites)
+        upper = exclusive_bounds(upper, 1 + self.start, self.landmarks.search.opposites)
         return np.concatenate([lower, -albedo]), np.concatenate([upper, albedo])
 
 

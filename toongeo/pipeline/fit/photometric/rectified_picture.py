@@ -63,7 +63,7 @@ class RectifiedPicture:
         inside = (px == given)[:, None, :]
         return upper * (1 - fy) + lower * fy, slope * inside
 
-    def trust(self, points: Floats) -> Floats:
+    def confidence_at(self, points: Floats) -> Floats:
         """Confidence (k,) at canonical points (k, 2) mm; 0 beyond the border."""
         height, width = self.confidence.shape
         px = self.grid(points)

@@ -14,9 +14,9 @@ from toongeo.pipeline.fit.landmarks.robust_weights import SETTLED, robust_weight
 from toongeo.protocols import Coefficients
 from toongeo.render.camera import ScaledOrthographicCamera
 
-__all__ = ["held_bounds", "likeliest", "posing_trust", "principal_point_of", "start_vector"]
+__all__ = ["held_bounds", "likeliest", "posing_weight", "principal_point_of", "start_vector"]
 
-_POSING_PASSES = 4
+_POSING_PASSES = 4  # of pose and robust weights in turn
 
 
 def likeliest(model: MorphableModel, unknowns: Unknowns) -> Floats:
@@ -50,17 +50,17 @@ def held_bounds(
     return lower, upper
 
 
-def posing_trust(points: Floats, pixels: Floats, options: FitOptions) -> Floats:
+def posing_weight(points: Floats, pixels: Floats, options: FitOptions) -> Floats:
     """Robust weights (k,) of the points that fix the first pose, from the misfit of the likeliest face."""
-    trust = np.ones(len(points))
+    robust_weight = np.ones(len(points))
     for _ in range(_POSING_PASSES if options.robust else 0):
-        scale, rotation, translation = scaled_orthographic_pose(points, pixels, trust)
+        scale, rotation, translation = scaled_orthographic_pose(points, pixels, robust_weight)
         camera = ScaledOrthographicCamera(scale, rotation, translation)
         squares = ((camera.project(points) - pixels) ** 2).sum(axis=1)
-        before, trust = trust, robust_weights(squares, options.robust, 0.0)
-        if np.abs(trust - before).max() <= SETTLED:
+        before, robust_weight = robust_weight, robust_weights(squares, options.robust, 0.0)
+        if np.abs(robust_weight - before).max() <= SETTLED:
             break
-    return trust
+    return robust_weight
 
 
 def principal_point_of(options: FitOptions, image_centre: Floats | None, frame: CanonicalFrame) -> Floats:

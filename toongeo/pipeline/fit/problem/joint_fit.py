@@ -23,14 +23,14 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
     if len(problems) == 1:
         return [problems[0].solve(algorithm)]
     options = problems[0].options
-    placements = [problem.placement(problem.start) for problem in problems]
-    parts = [problem.start for problem in problems]
+    states = [problem.first_state(problem.search.start) for problem in problems]
+    parts = [problem.search.start for problem in problems]
     passes = evaluations = 0
-    while passes < options.max_passes:
+    while passes < options.solver.max_passes:
         loss = JointLoss(
             [
-                problem.loss(placed.vertices, placed.prior_weight, placed.trust)
-                for problem, placed in zip(problems, placements, strict=True)
+                problem.loss(placed.vertices, placed.prior_weight, placed.robust_weight)
+                for problem, placed in zip(problems, states, strict=True)
             ]
         )
         x = loss.joined(parts)
@@ -38,25 +38,25 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
             loss,
             x,
             bounds=(
-                loss.joined([problem.bounds[0] for problem in problems]),
-                loss.joined([placed.upper for placed in placements]),
+                loss.joined([problem.search.bounds[0] for problem in problems]),
+                loss.joined([placed.upper for placed in states]),
             ),
             scale=1 / np.sqrt(loss.curvature(x)),
             algorithm=algorithm,
-            tolerance=options.tolerance,
-            max_evaluations=options.max_evaluations,
-            max_seconds=options.max_seconds,
+            tolerance=options.solver.tolerance,
+            max_evaluations=options.solver.max_evaluations,
+            max_seconds=options.solver.max_seconds,
         )
         parts = [loss.part(minimum.x, k) for k in range(len(problems))]
         passes, evaluations = passes + 1, evaluations + minimum.evaluations
-        before = placements
-        placements = [
+        before = states
+        states = [
             problem.renewed(placed, part, first=passes == 1)
             for problem, placed, part in zip(problems, before, parts, strict=True)
         ]
-        if all(p.settled(*pair) for p, *pair in zip(problems, before, placements, strict=True)):
+        if all(p.settled(*pair) for p, *pair in zip(problems, before, states, strict=True)):
             break
     return [
         problem.solution(np.minimum(part, after.upper), placed, minimum.status, passes, evaluations)
-        for problem, part, placed, after in zip(problems, parts, before, placements, strict=True)
+        for problem, part, placed, after in zip(problems, parts, before, states, strict=True)
     ]

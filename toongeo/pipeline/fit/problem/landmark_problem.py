@@ -1,4 +1,7 @@
-"""The optimisation problem of a landmark fit, and the way to its solution."""
+"""The optimisation problem of a landmark fit, and the way to its solution.
+
+Constants were chosen on heads of known shape and ten pictures (``benchmarks/truth3d.py``, ``benchmarks/landmarks.py``).
+"""
 
 from __future__ import annotations
 
@@ -26,6 +29,7 @@ from toongeo.pipeline.fit.losses.pitch_prior import PitchPrior
 from toongeo.pipeline.fit.losses.prior_loss import PriorLoss
 from toongeo.pipeline.fit.losses.total_loss import TotalLoss
 from toongeo.pipeline.fit.problem.exclusive_bounds import exclusive_bounds
+from toongeo.pipeline.fit.problem.landmark_target import LandmarkTarget, SearchBox
 from toongeo.pipeline.fit.problem.landmark_weights import evened_weights
 from toongeo.pipeline.fit.problem.solution import PassState, Solution
 
@@ -34,7 +38,7 @@ __all__ = ["LandmarkProblem"]
 _PITCH_WEIGHT = 4e-6  # of the prior on the pitch, which grows as w_r does
 _GROWTH = 4.0  # a loose first pass bends the face to most of what is odd: the misfit it leaves is a small part
 _ROUGH = 2.0  # times the expected misfit: what a single landmark may miss by without being odd at all
-_DISTRUST = 0.1  # a point with less robust weight is called an outlier
+_IGNORED = 0.1  # a point with less robust weight is called an outlier
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,55 +48,26 @@ class LandmarkProblem:
     Attributes
     ----------
     model : MorphableModel
-    pixels : (68, 2) or (k, 2) float, px
-        As they came, NaN rows missing.
     unknowns : Unknowns
     basis : LandmarkBasis
     frame : CanonicalFrame
-    seen : (k,) int
-        Landmarks that are there.
-    points : (k, 2) float
-        These in the canonical frame, mm.
-    weights : (k, 2, 2) float, 1/mm^2
-        Their weights in Eq. 4, with errors in outer-eye distances.
-    offsets : (68, 3) float, mm, model frame
-        From the landmarks of the model to where annotators see them.
-    prior : PriorLoss
-    bounds : two (n,) arrays
-    options : FitOptions
-    own : mean (k, 3) and modes (3 k, c), or None
-        Landmarks of the caller's own table, which do not slide.
-    count : int
-        N of Eq. 4: a point that is missing counts.
     principal_point : (2,) float, px
         Counts in perspective only.
-    neighbours : (k, k) bool
-    opposites : (p, 2) int
-        Unknowns of which at most one is above zero.
-    start : (n,) float
-    trust : (k,) float
-        Robust weights with which the first pass begins.
+    target : LandmarkTarget
+    search : SearchBox
+    prior : PriorLoss
+    options : FitOptions
     """
 
     model: MorphableModel
-    pixels: Floats
     unknowns: Unknowns
     basis: LandmarkBasis
     frame: CanonicalFrame
-    seen: NDArray[np.int64]
-    points: Floats
-    weights: Floats
-    offsets: Floats
-    prior: PriorLoss
-    bounds: tuple[Floats, Floats]
-    options: FitOptions
-    own: tuple[Floats, Floats] | None
-    count: int
     principal_point: Floats
-    neighbours: NDArray[np.bool_]
-    opposites: NDArray[np.int64]
-    start: Floats
-    trust: Floats
+    target: LandmarkTarget
+    search: SearchBox
+    prior: PriorLoss
+    options: FitOptions
 
     def solve(self, algorithm: str) -> Solution:
         """Minimise, place the jaw points anew, and again, until they stay or ``max_passes`` are done.
@@ -103,55 +78,56 @@ class LandmarkProblem:
         A few points that lie far off beside the others are no face outside the model: they lose their weight, in
         the misfit and in the next pass.
         """
-        x, placement = self.start, self.placement(self.start)
+        x, state = self.search.start, self.first_state(self.search.start)
         passes = evaluations = 0
-        while passes < self.options.max_passes:
-            loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
+        while passes < self.options.solver.max_passes:
+            loss = self.loss(state.vertices, state.prior_weight, state.robust_weight)
             decoupled = decoupled_pose(loss, x)
             minimum = nlopt_minimize(
                 decoupled,
                 x,
-                bounds=(self.bounds[0], placement.upper),
+                bounds=(self.search.bounds[0], state.upper),
                 scale=1 / np.sqrt(decoupled.curvature),
                 algorithm=algorithm,
-                tolerance=self.options.tolerance,
-                max_evaluations=self.options.max_evaluations,
-                max_seconds=self.options.max_seconds,
+                tolerance=self.options.solver.tolerance,
+                max_evaluations=self.options.solver.max_evaluations,
+                max_seconds=self.options.solver.max_seconds,
             )
             x = decoupled.x(minimum.x)
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
-            before, placement = placement, self.renewed(placement, x, first=passes == 1)
-            if self.settled(before, placement):
+            before, state = state, self.renewed(state, x, first=passes == 1)
+            if self.settled(before, state):
                 break
-        return self.solution(np.minimum(x, placement.upper), before, minimum.status, passes, evaluations)
+        return self.solution(np.minimum(x, state.upper), before, minimum.status, passes, evaluations)
 
-    def placement(self, x: Floats) -> PassState:
+    def first_state(self, x: Floats) -> PassState:
         """What the first pass holds fixed."""
-        return PassState(self.visible(x), self.trust, self.options.prior_weight, self.bounds[1])
+        return PassState(self.visible(x), self.target.robust_weight, self.options.prior_weight, self.search.bounds[1])
 
-    def renewed(self, placement: PassState, x: Floats, *, first: bool) -> PassState:
+    def renewed(self, state: PassState, x: Floats, *, first: bool) -> PassState:
         """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
-        loss = self.loss(placement.vertices, placement.prior_weight)
+        loss = self.loss(state.vertices, state.prior_weight)
         errors = loss.landmark.residuals(x)
-        trust = self._trusted(errors)
-        prior_weight = placement.prior_weight
+        robust_weight = self._robust_weight(errors)
+        prior_weight = state.prior_weight
         if first:
-            misfit = float((trust * np.einsum("ki,kij,kj->k", errors, self.weights, errors)).sum()) / self.count
-            expected = 2 * self.options.landmark_deviation**2
+            squares = robust_weight * np.einsum("ki,kij,kj->k", errors, self.target.weights, errors)
+            misfit = float(squares.sum()) / self.target.count
+            expected = 2 * self.options.prior.landmark_deviation**2
             prior_weight *= 1 + _GROWTH * max(0.0, misfit / expected - 1)
-        upper = exclusive_bounds(placement.upper, x, self.opposites)
-        return PassState(self.visible(x), trust, prior_weight, upper)
+        upper = exclusive_bounds(state.upper, x, self.search.opposites)
+        return PassState(self.visible(x), robust_weight, prior_weight, upper)
 
     def settled(self, before: PassState, after: PassState) -> bool:
         """Whether another pass would find the same."""
-        stayed = self.own is not None or np.array_equal(before.vertices, after.vertices)
-        believed = np.abs(after.trust - before.trust).max() <= SETTLED
+        stayed = self.target.own is not None or np.array_equal(before.vertices, after.vertices)
+        believed = np.abs(after.robust_weight - before.robust_weight).max() <= SETTLED
         same = before.prior_weight == after.prior_weight and np.array_equal(before.upper, after.upper)
         return bool(stayed and believed and same)
 
-    def solution(self, x: Floats, placement: PassState, status: str, passes: int, evaluations: int) -> Solution:
-        """The face at ``x``, where a pass with this placement ended."""
-        loss = self.loss(placement.vertices, placement.prior_weight, placement.trust)
+    def solution(self, x: Floats, state: PassState, status: str, passes: int, evaluations: int) -> Solution:
+        """The face at ``x``, where a pass with this state ended."""
+        loss = self.loss(state.vertices, state.prior_weight, state.robust_weight)
         return Solution(
             coefficients=x[self.unknowns.shape],
             camera=self.frame.camera(x, self.unknowns, self.principal_point),
@@ -163,56 +139,60 @@ class LandmarkProblem:
             status=status,
             passes=passes,
             evaluations=evaluations,
-            outliers=tuple(int(k) for k in self.seen[placement.trust < _DISTRUST]),
+            outliers=tuple(int(k) for k in self.target.seen[state.robust_weight < _IGNORED]),
         )
 
     def error(self, solution: Solution, pixels: Floats) -> tuple[float, float]:
         """Root mean square error of the inner landmarks, or of all in a table, and the outer-eye distance, px."""
         mean, modes = self.basis.at(solution.landmark_vertices)
         fitted = solution.camera.project(mean + (modes @ solution.coefficients).reshape(-1, 3))
-        if self.own is None:
+        if self.target.own is None:
             return inner_error(fitted, pixels)
-        own = solution.camera.project(self.own[0] + (self.own[1] @ solution.coefficients).reshape(-1, 3))
+        own = solution.camera.project(self.target.own[0] + (self.target.own[1] @ solution.coefficients).reshape(-1, 3))
         right, left = fitted[list(OUTER_EYES)]
-        rms = np.sqrt(((own - pixels[self.seen]) ** 2).sum(axis=1).mean())
+        rms = np.sqrt(((own - pixels[self.target.seen]) ** 2).sum(axis=1).mean())
         return float(rms), float(np.linalg.norm(left - right))
 
-    def loss(self, landmark_vertices: NDArray[np.int64], prior_weight: float, trust: Floats | None = None) -> TotalLoss:
+    def loss(
+        self, landmark_vertices: NDArray[np.int64], prior_weight: float, robust_weight: Floats | None = None
+    ) -> TotalLoss:
         """Eq. 3 with the landmarks (68,) at these vertices, this ``w_r``, and robust weights (k,)."""
-        mean, modes = self.basis.at(landmark_vertices[self.seen]) if self.own is None else self.own
-        if self.own is None:
-            mean = mean + self.offsets[self.seen]
-        weights = evened_weights(self.weights, prior_weight / self.options.prior_weight - 1, self.basis.outer_eye_mm)
+        mean, modes = self.basis.at(landmark_vertices[self.target.seen]) if self.target.own is None else self.target.own
+        if self.target.own is None:
+            mean = mean + self.target.offsets[self.target.seen]
+        weights = evened_weights(
+            self.target.weights, prior_weight / self.options.prior_weight - 1, self.basis.outer_eye_mm
+        )
         landmark = LandmarkLoss(
             unknowns=self.unknowns,
-            points=self.points,
-            weights=weights if trust is None else trust[:, None, None] * weights,
-            count=self.count,
+            points=self.target.points,
+            weights=weights if robust_weight is None else robust_weight[:, None, None] * weights,
+            count=self.target.count,
             mean=mean,
             modes=modes,
             rotation0=self.frame.rotation0,
             principal=self.frame.from_pixels(self.principal_point),
         )
-        nod = PitchPrior(self.unknowns, self.frame.rotation0, self.options.pitch_deviation)
+        nod = PitchPrior(self.unknowns, self.frame.rotation0, self.options.prior.pitch_deviation)
         pitch_weight = prior_weight / self.options.prior_weight * _PITCH_WEIGHT
         return TotalLoss(landmark, self.prior, nod, self.options.landmark_weight, prior_weight, pitch_weight)
 
-    def _trusted(self, residuals: Floats) -> Floats:
+    def _robust_weight(self, residuals: Floats) -> Floats:
         """Robust weights (k,) for errors (k, 2), mm; along an outline an error counts less here too."""
-        W = self.weights  # its larger eigenvalue is the weight across an outline, or in all directions
+        W = self.target.weights  # its larger eigenvalue is the weight across an outline, or in all directions
         half = (W[:, 0, 0] - W[:, 1, 1]) / 2
         importance = (W[:, 0, 0] + W[:, 1, 1]) / 2 + np.sqrt(half**2 + W[:, 0, 1] ** 2)
         importance *= self.basis.outer_eye_mm**2
-        reasons = outlier_errors(residuals, self.neighbours)
-        costs = np.einsum("cki,kij,ckj->ck", reasons, self.weights, reasons).min(axis=0)
+        reasons = outlier_errors(residuals, self.target.neighbours)
+        costs = np.einsum("cki,kij,ckj->ck", reasons, self.target.weights, reasons).min(axis=0)
         squares = np.divide(costs, importance, out=np.full(len(costs), np.nan), where=importance > 0)
-        return robust_weights(squares, self.options.robust, (_ROUGH * self.options.landmark_deviation) ** 2)
+        return robust_weights(squares, self.options.robust, (_ROUGH * self.options.prior.landmark_deviation) ** 2)
 
     def visible(self, x: Floats) -> NDArray[np.int64]:
         """The 68 landmark vertices of the face at ``x``: jaw points on their lines, or on the silhouette."""
         coefficients = x[self.unknowns.shape]
         landmarks = visible_landmarks(self.basis, coefficients, self.frame.rotation(x, self.unknowns))
-        if self.options.contour == "lines" or self.own is not None:
+        if self.options.contour == "lines" or self.target.own is not None:
             return landmarks
         camera = self.frame.camera(x, self.unknowns, self.principal_point)
-        return silhouette_landmarks(self.model, coefficients, camera, self.pixels, landmarks)
+        return silhouette_landmarks(self.model, coefficients, camera, self.target.pixels, landmarks)

@@ -35,6 +35,6 @@ class PassState:
     """What a pass holds fixed: landmark vertices (68,), robust weights (k,), ``w_r``, and the upper bounds (n,)."""
 
     vertices: NDArray[np.int64]
-    trust: Floats
+    robust_weight: Floats
     prior_weight: float
     upper: Floats

@@ -21,11 +21,12 @@ from toongeo.pipeline.fit.losses.prior_loss import PriorLoss
 from toongeo.pipeline.fit.problem.initial_guess import (
     held_bounds,
     likeliest,
-    posing_trust,
+    posing_weight,
     principal_point_of,
     start_vector,
 )
 from toongeo.pipeline.fit.problem.landmark_problem import LandmarkProblem
+from toongeo.pipeline.fit.problem.landmark_target import LandmarkTarget, SearchBox
 from toongeo.pipeline.fit.problem.landmark_weights import landmark_weights
 from toongeo.protocols import Coefficients
 
@@ -64,9 +65,9 @@ def starting_problem(
     mean, modes = basis.at(basis.landmarks) if own is None else own
     face = mean + (modes @ expected[unknowns.shape]).reshape(-1, 3)
     face = face + offsets if own is None else face
-    frame, trust = _first_pose(face, pixels, seen, options, guess, table)
+    frame, robust_weight = _first_pose(face, pixels, seen, options, guess, table)
     principal_point = principal_point_of(options, image_centre, frame)
-    bounds = _bounds(model, unknowns, expected, options.max_deviation)
+    bounds = _bounds(model, unknowns, expected, options.prior.max_deviation)
     if unknowns.perspective:
         start[unknowns.translation] = -frame.from_pixels(principal_point)
         for bound in bounds:
@@ -81,24 +82,27 @@ def starting_problem(
         weights = np.tile(np.eye(2), (len(pixels), 1, 1))
     return LandmarkProblem(
         model=model,
-        pixels=pixels,
         unknowns=unknowns,
         basis=basis,
         frame=frame,
-        seen=seen,
-        points=points[seen],
-        weights=weights[seen] / basis.outer_eye_mm**2,
-        offsets=offsets,
-        prior=PriorLoss(unknowns, options.identity_weight, options.expression_weight, expected),
-        bounds=bounds if options.refine else held_bounds(bounds, start, unknowns, guess.pose is not None),
-        options=options,
-        own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
-        count=len(pixels),
         principal_point=principal_point,
-        neighbours=_neighbours(seen, table),
-        opposites=unknowns.n_identity + opposite_expressions(model)[: None if options.refine else 0],
-        start=start,
-        trust=trust[seen],
+        target=LandmarkTarget(
+            pixels=pixels,
+            seen=seen,
+            points=points[seen],
+            weights=weights[seen] / basis.outer_eye_mm**2,
+            offsets=offsets,
+            own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
+            neighbours=_neighbours(seen, table),
+            robust_weight=robust_weight[seen],
+        ),
+        search=SearchBox(
+            start=start,
+            bounds=bounds if options.refine else held_bounds(bounds, start, unknowns, guess.pose is not None),
+            opposites=unknowns.n_identity + opposite_expressions(model)[: None if options.refine else 0],
+        ),
+        prior=PriorLoss(unknowns, options.prior.identity_weight, options.prior.expression_weight, expected),
+        options=options,
     )
 
 
@@ -116,15 +120,15 @@ def _first_pose(
     """
     inner = np.intersect1d(seen, INNER)
     posing = inner if table is None and len(inner) >= _FEWEST else seen
-    trust = np.ones(len(pixels))
-    trust[posing] = posing_trust(face[posing], pixels[posing], options)
-    frame = canonical_frame(face[posing], pixels[posing], trust[posing])
+    robust_weight = np.ones(len(pixels))
+    robust_weight[posing] = posing_weight(face[posing], pixels[posing], options)
+    frame = canonical_frame(face[posing], pixels[posing], robust_weight[posing])
     if guess.pose is None:
-        return frame, trust
+        return frame, robust_weight
     posed = canonical_frame(face[posing], guess.pose.project(face[posing]))
     if not options.refine:
-        return posed, trust
-    return replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0), trust
+        return posed, robust_weight
+    return replace(frame, rotation0=frame.roll.T @ posed.roll @ posed.rotation0), robust_weight
 
 
 def _row_blocks(modes: Floats, points: NDArray[np.int64]) -> Floats:

@@ -1,17 +1,20 @@
-"""Where the lids are: the mean over many contours, each weighted by how likely it is."""
+"""Where the lids are: the mean over many contours, each weighted by how likely it is.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/snapping.py``).
+"""
 
 from __future__ import annotations
 
 import csv
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
 import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
+from toongeo.model.data_path import data_path
 from toongeo.pipeline.parse.lids.lid_candidates import LidCandidates, lid_candidates, lid_contour
 from toongeo.pipeline.parse.lids.lid_features import lid_features
 from toongeo.pipeline.parse.lids.lid_patch import RESOLUTION, LidPatch, lid_patch
@@ -55,9 +58,9 @@ class LidWeights:
 
 @cache
 def lid_weights() -> LidWeights:
-    """The weights that come with the library; ``benchmarks/train_lids.py`` makes them."""
-    text = (files("toongeo.pipeline.parse") / "lid_weights.csv").read_text(encoding="utf-8")
-    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
+    """The weights that come with the library; ``data_templates/build/lid_weights.py`` makes them."""
+    with open(data_path("data_templates/lid_weights.csv"), encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     columns = (np.array([float(row[key]) for row in rows]) for key in ("mean", "deviation", "weight"))
     return LidWeights(tuple(row["feature"] for row in rows), *columns)
 

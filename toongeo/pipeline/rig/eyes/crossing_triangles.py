@@ -1,4 +1,7 @@
-"""Where the skin around an eye passes through itself."""
+"""Where the skin around an eye passes through itself.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
+"""
 
 from typing import NamedTuple
 

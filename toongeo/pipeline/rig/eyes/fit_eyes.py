@@ -1,4 +1,7 @@
-"""Eyeballs behind the lids of a face."""
+"""Eyeballs behind the lids of a face.
+
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
+"""
 
 import time
 from dataclasses import dataclass
@@ -6,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo._read_only import read_only
-from toongeo.model import EyeballTemplate
+from toongeo.model import EyeballTemplate, MorphableModel
 from toongeo.model.anatomy.gaze import GAZE_NAMES, TURN, gaze_rotation
-from toongeo.model.anatomy.lid_rings import lid_rings, opening_height
+from toongeo.model.anatomy.lid_rings import lid_rings, lids_of, opening_height
 from toongeo.model.anatomy.parts import SIDES
+from toongeo.model.anatomy.rims import rim_path
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.rig import Rig
 
@@ -30,7 +34,7 @@ _REACH = 2.0  # widths of the opening: skin farther away is not looked at
 
 @dataclass(frozen=True, eq=False)
 class Eyes:
-    """Left and right eyeball of a face.
+    """Left and right eyeball of a face; of a model that has none, arrays of no rows.
 
     Attributes
     ----------
@@ -42,8 +46,8 @@ class Eyes:
         the eyeball only so far that the iris does not leave it.
     pose : (8,) float64
         Weights of ``GAZE_NAMES`` with which the eyes look as in the picture.
-    report : dict
-        ``seconds``.
+    seconds : float
+        That finding them took.
     """
 
     centres: np.ndarray
@@ -51,7 +55,7 @@ class Eyes:
     templates: tuple[EyeballTemplate, ...]
     turn: np.ndarray
     pose: np.ndarray
-    report: dict[str, float]
+    seconds: float
 
     def __post_init__(self) -> None:
         read_only(self, "centres", "radii", "turn", "pose")
@@ -88,18 +92,28 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
     Returns
     -------
     Eyes
+        One for each eyeball of the model.
     """
     started = time.perf_counter()
-    centres, radii, turn = np.empty((2, 3)), np.empty(2), np.empty((2, 2))
+    count = len(face.model.eyes)
+    centres, radii, turn = np.empty((count, 3)), np.empty(count), np.empty((count, 2))
     axes = np.array([[0.0, 0.0, 1.0], _line_of_sight(face)])
-    for side, name in enumerate(SIDES):
-        rings = lid_rings(face.model, name)
+    for side in range(count):
+        edges, upper, lower = _edges(face.model, SIDES[side])
         skin = face.region("skin").copy()
-        skin[rings.vertices] = False
-        centres[side], radii[side] = _sphere(rig.neutral[rings.vertices], rig.neutral[skin], axes)
-        turn[side] = _turn(rig.neutral[rings.upper[0]], rig.neutral[rings.lower[0]], radii[side])
-    report = {"seconds": time.perf_counter() - started}
-    return Eyes(centres, radii, face.model.eyes, turn, np.zeros(len(GAZE_NAMES)), report)
+        skin[edges] = False
+        centres[side], radii[side] = _sphere(rig.neutral[edges], rig.neutral[skin], axes)
+        turn[side] = _turn(rig.neutral[upper], rig.neutral[lower], radii[side])
+    return Eyes(centres, radii, face.model.eyes, turn, np.zeros(len(GAZE_NAMES)), time.perf_counter() - started)
+
+
+def _edges(model: MorphableModel, side: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices of the lids' edges, and of their upper and lower rims; the rims alone where the lids are no rings."""
+    if model.has(*lids_of(side)):
+        rings = lid_rings(model, side)
+        return rings.vertices, rings.upper[0], rings.lower[0]
+    upper, lower = (rim_path(model, f"lid_{lid}_{side}") for lid in ("upper", "lower"))
+    return np.union1d(upper, lower), upper, lower
 
 
 def _turn(upper: np.ndarray, lower: np.ndarray, radius: float) -> np.ndarray:

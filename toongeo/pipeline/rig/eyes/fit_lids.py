@@ -2,7 +2,7 @@
 
 import dataclasses
 
-from toongeo.model.anatomy.lid_rings import lid_rings
+from toongeo.model.anatomy.lid_rings import lid_rings, lids_of
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.eyes.close_lids import close_lids
@@ -40,16 +40,23 @@ def fit_lids(face: AlignedFace, rig: Rig, *, close: bool = True) -> tuple[Rig, E
     Rig
         Its report has ``closure_left`` and ``closure_right``, in percent (:func:`lid_closure`).
     Eyes
+        Without lids that are rings of quads around a socket, eyeballs are all there is; a model without eyeballs has
+        none either.
     """
     eyes = fit_eyes(face, rig)
+    if not face.model.has("eyes", *lids_of("left"), *lids_of("right")):
+        return rig, eyes
+    blinks = [f"eyeBlink{name.capitalize()}" for name in SIDES]
     rig = seat_lids(face, rig, eyes)
+    if not face.model.has(*blinks):
+        return rebuild_sockets(face, follow_gaze(face, rig, eyes), eyes), eyes
     if close:
         rig = close_lids(face, rig, eyes)
     rig = separate_lids(face, follow_gaze(face, rig, eyes), eyes)
     rig = unfold_lids(face, keep_lids_outside(face, rig, eyes), eyes)
     rig = rebuild_sockets(face, rig, eyes)
-    report = dict(rig.report)
-    for name in SIDES:
-        blink = rig.neutral + rig.deltas[rig.names.index(f"eyeBlink{name.capitalize()}")]
-        report[f"closure_{name}"] = lid_closure(lid_rings(face.model, name), rig.neutral, blink)
-    return dataclasses.replace(rig, report=report), eyes
+    closures = {}
+    for name, shape in zip(SIDES, blinks, strict=True):
+        blink = rig.neutral + rig.deltas[rig.names.index(shape)]
+        closures[f"closure_{name}"] = lid_closure(lid_rings(face.model, name), rig.neutral, blink)
+    return dataclasses.replace(rig, report=dataclasses.replace(rig.report, **closures)), eyes

@@ -1,6 +1,8 @@
-"""Upper and lower lids that do not pass through each other."""
+"""Upper and lower lids that do not pass through each other.
 
-import dataclasses
+Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
+"""
+
 import time
 
 import numpy as np
@@ -54,8 +56,7 @@ def separate_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
                 if not change.any():
                     continue
                 shapes[k, patch.vertices] += patch.followed(at, change[at])
-    report = {**rig.report, "seconds": rig.report["seconds"] + time.perf_counter() - started}
-    return dataclasses.replace(rig, deltas=deltas, gaze=gaze, report=report)
+    return rig.changed(started, deltas=deltas, gaze=gaze)
 
 
 def _parting(rings: LidRings, V: np.ndarray, shape: np.ndarray, up: np.ndarray, least: float) -> np.ndarray:

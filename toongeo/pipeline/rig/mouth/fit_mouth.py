@@ -25,6 +25,9 @@ def fit_mouth(face: AlignedFace, rig: Rig) -> Rig:
     Returns
     -------
     Rig
-        A new one; its report has ``lips_closure``, in percent.
+        A new one; its report has ``lips_closure``, in percent. The same, if the model has no ``mouth_cavity``, at
+        whose border the lips end.
     """
+    if not face.model.has("mouth_cavity"):
+        return rig
     return hang_teeth(face, seal_lips(face, close_slit(face, rig)))

@@ -1,6 +1,8 @@
-"""Teeth and tongue that move with this face's jaw and stay in its mouth."""
+"""Teeth and tongue that move with this face's jaw and stay in its mouth.
 
-import dataclasses
+Constants were judged on the seven examples and 15 caricatures (``benchmarks/lips.py``).
+"""
+
 import time
 from functools import lru_cache
 
@@ -16,11 +18,12 @@ from toongeo.pipeline.rig.rig import Rig
 
 __all__ = ["hang_teeth"]
 
+_NEEDS = (*TEETH_AND_TONGUE, "mouth_cavity", "jaw", "jawOpen", "mouthClose")
 _STILL_MM = 0.05  # on the template: what an expression moves less than this it holds still
 _NEAR_MM = 60.0  # on the template: skin that teeth could come through lies so near to the lips
 _EVERY = 4  # every so manieth vertex of teeth and tongue is looked at first
 _COVER_MM = 3.0  # seen from the front, skin so near to a point covers it
-_NEIGHBOURS = 4
+_NEIGHBOURS = 4  # skin vertices beside a point, of which the foremost counts
 _CLEAR_MM = 1.0  # what is farther behind the skin has not come out
 _SHARES = (0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0)  # of the way back to the middle of the tongue that are tried
 
@@ -43,14 +46,15 @@ def hang_teeth(face: AlignedFace, rig: Rig) -> Rig:
     Returns
     -------
     Rig
-        A new one; only teeth and tongue differ.
+        A new one; only teeth and tongue differ. The same, if the model lacks one of these parts.
     """
+    if not face.model.has(*_NEEDS):
+        return rig
     started = time.perf_counter()
     neutral, deltas = rig.neutral.copy(), rig.deltas.copy()
     _follow_chin(face.model, rig.names, deltas)
     _keep_inside(face.model, rig.names, neutral, deltas)
-    report = rig.report | {"seconds": rig.report["seconds"] + time.perf_counter() - started}
-    return dataclasses.replace(rig, neutral=neutral, deltas=deltas, report=report)
+    return rig.changed(started, neutral=neutral, deltas=deltas)
 
 
 def _follow_chin(model: MorphableModel, names: tuple[str, ...], deltas: np.ndarray) -> None:

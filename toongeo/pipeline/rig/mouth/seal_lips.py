@@ -1,4 +1,7 @@
-"""Lips that meet and do not cross."""
+"""Lips that meet and do not cross.
+
+Constants were judged on the seven examples and 15 caricatures (``benchmarks/lips.py``).
+"""
 
 import dataclasses
 import time
@@ -52,20 +55,20 @@ def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
     drawn = [np.maximum(heights, crossed) for heights in _heights(line, face.vertices, up)]
     neutral[line.follows] += line.spread @ _parting(line, neutral, up, drawn)
     at_rest = _heights(line, neutral, up)
-    close, jaw, pucker = (rig.names.index(name) for name in ("mouthClose", "jawOpen", "mouthPucker"))
+    sealed = [rig.names.index(name) for name in ("mouthClose", "mouthPucker") if name in rig.names]
     moves = np.abs(deltas[:, line.vertices]).max((1, 2)) > _MOVES_MM
-    moves[[close, pucker]] = False
+    moves[sealed] = False
     for k in np.flatnonzero(moves):
         deltas[k, line.follows] += line.spread @ _parting(line, neutral + deltas[k], up, at_rest)
-    deltas[pucker, line.follows] += line.spread @ _sealing(line, neutral + deltas[pucker], up)
-    opened = neutral + deltas[jaw]
-    deltas[close, line.follows] += line.spread @ _sealing(line, opened + deltas[close], up)
-    gaps = [_gap(line, V) for V in (opened, opened + deltas[close])]
-    report = rig.report | {
-        "lips_closure": 100 * (1 - gaps[1] / gaps[0]),
-        "seconds": rig.report["seconds"] + time.perf_counter() - started,
-    }
-    return dataclasses.replace(rig, neutral=neutral, deltas=deltas, report=report)
+    report = rig.report
+    for seal in sealed:
+        pucker, jaw_too = rig.names[seal] == "mouthPucker", "jawOpen" in rig.names
+        opened = neutral + (deltas[rig.names.index("jawOpen")] if jaw_too and not pucker else 0.0)
+        deltas[seal, line.follows] += line.spread @ _sealing(line, opened + deltas[seal], up)
+        if jaw_too and not pucker:
+            closure = 100 * (1 - _gap(line, opened + deltas[seal]) / _gap(line, opened))
+            report = dataclasses.replace(report, lips_closure=closure)
+    return dataclasses.replace(rig, report=report).changed(started, neutral=neutral, deltas=deltas)
 
 
 def _sealing(line: LipLine, V: np.ndarray, up: np.ndarray) -> np.ndarray:

@@ -1,4 +1,7 @@
-"""Where in an eye an iris may be, and how large."""
+"""Where in an eye an iris may be, and how large.
+
+Constants were chosen by eye; which of the seven examples and 15 caricatures were looked at was not written down.
+"""
 
 from __future__ import annotations
 

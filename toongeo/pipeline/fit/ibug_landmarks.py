@@ -24,6 +24,8 @@ SCHEMES = (*PARTS_OF_IBUG, "mediapipe478")
 def ibug_landmarks(landmarks: ArrayLike, scheme: str = "ibug68") -> NDArray[np.float64]:
     """The 68 landmarks (68, 2) px out of those of a scheme; what it does not have is NaN.
 
+    Every function with ``scheme=`` takes its landmarks through this door, and knows 68 points behind it.
+
     Parameters
     ----------
     landmarks : array_like, px
@@ -36,7 +38,8 @@ def ibug_landmarks(landmarks: ArrayLike, scheme: str = "ibug68") -> NDArray[np.f
     Raises
     ------
     ValueError
-        If the scheme is not known, its number of points is another, or they are not numbers.
+        If the scheme is not known, its number of points is another, they are not numbers, one is infinite or half
+        missing, or all are missing.
 
     Examples
     --------
@@ -47,6 +50,10 @@ def ibug_landmarks(landmarks: ArrayLike, scheme: str = "ibug68") -> NDArray[np.f
     >>> ibug_landmarks(np.arange(956.0).reshape(478, 2), "mediapipe478")[36]  # point 33 of the mesh
     array([66., 67.])
     """
+    if not isinstance(scheme, str):
+        raise ValueError(
+            f"scheme: expected a name here, got {type(scheme).__name__}: a table is for fit_3dmm and make_avatar"
+        )
     if scheme not in SCHEMES:
         raise ValueError(f"scheme: expected one of {', '.join(map(repr, SCHEMES))}, or a table, got {scheme!r}")
     if scheme == "ibug68":
@@ -56,10 +63,10 @@ def ibug_landmarks(landmarks: ArrayLike, scheme: str = "ibug68") -> NDArray[np.f
         if points.shape not in ((N_WITH_IRISES, 2), (N_MESH, 2)):
             wanted = f"({N_WITH_IRISES}, 2) or ({N_MESH}, 2)"
             raise ValueError(f"landmarks: expected shape {wanted} px for scheme {scheme!r}, got {points.shape}")
-        return points[VERTICES]
+        return landmark_array(points[VERTICES])
     where = PARTS_OF_IBUG[scheme]
     if points.shape != (len(where), 2):
         raise ValueError(f"landmarks: expected shape ({len(where)}, 2) for scheme {scheme!r}, got {points.shape}")
     placed = np.full((68, 2), np.nan)
     placed[where] = points
-    return placed
+    return landmark_array(placed)
