@@ -1,20 +1,19 @@
 // The landmark editor: what is selected, how points move, and what is drawn.
 import { help, question } from './dialog.js';
+import { Edits } from './edits.js';
 import { Files } from './files.js';
 import { Gestures } from './gestures.js';
 import { listenKeys } from './keys.js';
-import { History, moved, state } from './landmarks.js';
-import { mirrorMap } from './mirror.js';
-import { movement, rounded } from './movement.js';
+import { History, state } from './landmarks.js';
 import { Overlay } from './overlay.js';
 import { Panel } from './panel.js';
+import { inBox, pick } from './picking.js';
 import { Placing } from './placing.js';
 import { Refit } from './refit.js';
 import { HELP, TEMPLATE } from './template.js';
 import { View } from './view.js';
 
 const TOGGLES = ['box', 'soft', 'both', 'fitted'];
-const LINE = 7; // CSS px within which a line is hit
 const ZOOM = 1.4;
 const SEEN = 6000; // ms that a line of status stays on the picture
 let editors = 0;
@@ -38,11 +37,12 @@ export class Editor {
     this.overlay = new Overlay(this.parts.overlay, settings);
     this.refit = new Refit(this.parts, backend, () => this.draw());
     this.files = new Files(this, this.parts, backend);
+    this.edits = new Edits(this, this.parts, settings);
     this.placing = new Placing(this, this.parts, settings);
     this.panel = new Panel(this.parts, settings, {
       select: (k, more) => this.select([k], more),
-      put: (axis, value) => this.put(axis, value),
-      miss: (isMissing) => this.miss(isMissing),
+      put: (axis, value) => this.edits.put(axis, value),
+      miss: (isMissing) => this.edits.miss(isMissing),
     });
     this.gestures = new Gestures(this.parts.surface, this.view, this);
     this.listen(root);
@@ -54,7 +54,7 @@ export class Editor {
     const acts = {
       undo: () => this.step(-1), redo: () => this.step(1), save: () => this.save(), help: () => this.help(),
       previous: () => this.go(-1), next: () => this.go(1), in: () => view.zoom(ZOOM), out: () => view.zoom(1 / ZOOM),
-      all: () => view.fit(), part: () => this.selectParts(), mirror: () => this.mirror(), detect: () => this.files.detect(),
+      all: () => view.fit(), part: () => this.selectParts(), mirror: () => this.edits.mirror(), detect: () => this.files.detect(),
       clicks: () => this.placing.begin(), front: () => this.refit.face?.front(),
     };
     for (const [name, act] of Object.entries(acts)) parts[name].addEventListener('click', act);
@@ -75,6 +75,7 @@ export class Editor {
 
   end() {
     this.observer.disconnect();
+    this.refit.face?.stage.renderer.dispose();
   }
 
   // What is shown: the last step, or what a drag would make of it.
@@ -90,6 +91,10 @@ export class Editor {
 
   get isPlacing() {
     return this.placing.isOn;
+  }
+
+  get isOpen() {
+    return this.files.isOpen;
   }
 
   get isBoxing() {
@@ -144,7 +149,7 @@ export class Editor {
     this.parts.redo.disabled = this.history.at === this.history.steps.length - 1;
     this.files.tell();
     this.panel.show(this.state, this.selection);
-    this.refit.run({ picture: this.files.current, state: this.state, isFinal });
+    if (this.isOpen) this.refit.run({ picture: this.files.current, state: this.state, isFinal });
     this.draw();
   }
 
@@ -155,6 +160,7 @@ export class Editor {
       this.isDrawn = true;
       this.files.paint(this.view);
       this.parts.overlay.classList.toggle('placing', this.isPlacing);
+      this.parts.overlay.classList.toggle('closed', !this.isOpen);
       this.overlay.draw(this.view, this.state, {
         selection: this.selection,
         near: this.near,
@@ -165,18 +171,11 @@ export class Editor {
 
   // The nearest point, or a point of the nearest line, at CSS pixels; null if nothing is near.
   hit(at, radius) {
-    const { points, missing } = this.state;
-    const places = points.map((point) => this.view.toScreen(point));
-    const away = ([x, y]) => Math.hypot(x - at[0], y - at[1]);
-    const point = places.reduce((best, place, k) => (away(place) < away(places[best]) ? k : best), 0);
-    if (away(places[point]) <= radius) return { point, isLine: false };
-    for (const { first, last, closed } of this.settings.lines) {
-      for (let k = first; k <= last; k++) {
-        const next = k < last ? k + 1 : closed ? first : k;
-        if (!missing[k] && !missing[next] && distance(at, places[k], places[next]) <= LINE) return { point: k, isLine: true };
-      }
-    }
-    return null;
+    return this.isOpen ? pick(at, radius, this.places, this.state.missing, this.settings.lines) : null;
+  }
+
+  get places() {
+    return this.state.points.map((point) => this.view.toScreen(point));
   }
 
   hover(hit) {
@@ -199,8 +198,7 @@ export class Editor {
     }
     this.selection = next;
     this.panel.show(this.state, next);
-    if (points.length === 1 && next.size === 1) this.say(this.where(points[0]));
-    else this.say(next.size ? `${next.size} points selected` : '');
+    this.sayWhere();
     this.draw();
   }
 
@@ -210,12 +208,7 @@ export class Editor {
 
   selectBox(box, more) {
     this.rubber(null);
-    const [[x, y], [u, v]] = box;
-    const within = (value, a, b) => value >= Math.min(a, b) && value <= Math.max(a, b);
-    const inside = this.all.filter((k) => {
-      const [px, py] = this.view.toScreen(this.state.points[k]);
-      return within(px, x, u) && within(py, y, v);
-    });
+    const inside = inBox(box, this.places);
     this.select(more ? [...this.selection, ...inside] : inside, false);
   }
 
@@ -228,67 +221,15 @@ export class Editor {
     this.select([(last + step + this.all.length) % this.all.length], false);
   }
 
-  where(k) {
-    const [x, y] = this.state.points[k];
-    return `${k}, ${this.panel.words(k)}: ${this.state.missing[k] ? 'missing' : `x ${x.toFixed(1)}, y ${y.toFixed(1)}`}`;
-  }
-
-  drag() {
-    const from = this.history.state;
-    const placed = new Set(this.selection);
-    const go = movement(from, placed, { ...this.on, reach: Number(this.parts.reach.value), settings: this.settings });
-    return {
-      to: (d) => this.preview(moved(from, go(d), placed)),
-      end: () => {
-        this.commit();
-        if (placed.size === 1) this.say(this.where([...placed][0]));
-      },
-      undo: () => this.preview(null),
-    };
-  }
-
-  nudge(d) {
-    if (!this.selection.size || this.isPlacing) return;
-    const drag = this.drag();
-    drag.to(d);
-    this.commit(`nudge ${[...this.selection]}`);
-    if (this.selection.size === 1) this.say(this.where([...this.selection][0]));
-  }
-
-  put(axis, value) {
+  // What is selected, for those who do not see it.
+  sayWhere() {
     const [k] = this.selection;
-    if (k === undefined || !Number.isFinite(value)) return;
-    const d = [0, 0];
-    d[axis] = value - this.state.points[k][axis];
-    this.nudge(d);
-  }
-
-  miss(isMissing) {
-    const next = state(this.state.points, this.state.missing, this.state.confidence);
-    for (const k of this.selection) next.missing[k] = isMissing;
-    this.shownState = next;
-    this.commit();
-    this.say(isMissing ? 'Missing: the face does not mind these points' : 'No longer missing');
-  }
-
-  toggleMissing() {
-    if (this.selection.size) this.miss(![...this.selection].every((k) => this.state.missing[k]));
-  }
-
-  // The selected points, as they would lie on the other side.
-  mirror() {
-    const { points, missing } = this.state;
-    const { mirror: twins } = this.settings;
-    const map = mirrorMap(points, missing, twins);
-    const copied = [...this.selection].filter((k) => !this.selection.has(twins[k]));
-    if (!map || !copied.length) {
-      this.say('Select points of one side, which are then copied to the other');
+    if (this.selection.size !== 1) {
+      this.say(this.selection.size ? `${this.selection.size} points selected` : '');
       return;
     }
-    const places = new Map(copied.map((k) => [twins[k], map.place(points[k]).map(rounded)]));
-    this.shownState = moved(this.state, places, places.keys());
-    this.commit();
-    this.say(`${copied.length} points copied to the other side`);
+    const [x, y] = this.state.points[k];
+    this.say(`${k}, ${this.panel.words(k)}: ${this.state.missing[k] ? 'missing' : `x ${x.toFixed(1)}, y ${y.toFixed(1)}`}`);
   }
 
   toggle(name) {
@@ -332,29 +273,4 @@ export class Editor {
   question(text, answers) {
     return question(this.parts, text, answers);
   }
-
-  scripted() {
-    return {
-      points: () => this.state.points,
-      missing: () => this.state.missing,
-      confidence: () => this.state.confidence,
-      screen: (k) => this.scripted().pixel(this.state.points[k]),
-      pixel: (place) => {
-        const box = this.parts.surface.getBoundingClientRect();
-        const [x, y] = this.view.toScreen(place);
-        return [box.left + x, box.top + y];
-      },
-      scale: () => this.view.scale,
-      select: (points) => this.select(points, false),
-      selection: () => [...this.selection],
-      fits: () => this.refit.count,
-      face: () => this.refit.face?.middle(),
-    };
-  }
-}
-
-function distance([x, y], [ax, ay], [bx, by]) {
-  const [dx, dy] = [bx - ax, by - ay];
-  const along = Math.min(Math.max(((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1), 0), 1);
-  return Math.hypot(x - ax - along * dx, y - ay - along * dy);
 }

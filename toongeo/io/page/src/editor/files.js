@@ -143,6 +143,8 @@ export class Files {
 
   async detect() {
     const { editor } = this;
+    if (!this.isOpen) return;
+    if (editor.isPlacing) editor.endPlacing(false);
     const asked = this.current;
     editor.say('Looking for the face…');
     const answer = await editor.ask('detect', { picture: asked });

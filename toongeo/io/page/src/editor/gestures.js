@@ -71,7 +71,7 @@ export class Gestures {
     let drag = null;
     return {
       to: (place) => {
-        drag ??= this.editor.drag();
+        drag ??= this.editor.edits.drag();
         drag.to([place[0] - at[0], place[1] - at[1]].map((px) => px / this.view.scale));
       },
       end: () => drag?.end(),

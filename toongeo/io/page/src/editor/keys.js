@@ -14,12 +14,12 @@ export function listenKeys(root, surface, editor, view) {
     a: () => editor.select(editor.all, false),
     Escape: () => (editor.isPlacing ? editor.endPlacing(false) : editor.select([], false)),
     Enter: () => editor.isPlacing && editor.endPlacing(true),
-    Delete: () => editor.toggleMissing(),
-    Backspace: () => editor.toggleMissing(),
+    Delete: () => editor.edits.toggleMissing(),
+    Backspace: () => editor.edits.toggleMissing(),
     s: () => editor.toggle('soft'),
     b: () => editor.toggle('both'),
     f: () => editor.toggle('fitted'),
-    m: () => editor.mirror(),
+    m: () => editor.edits.mirror(),
     '+': () => view.zoom(ZOOM),
     '=': () => view.zoom(ZOOM),
     '-': () => view.zoom(1 / ZOOM),
@@ -45,7 +45,7 @@ export function listenKeys(root, surface, editor, view) {
     const step = NUDGE[event.key];
     if (step) {
       const px = event.shiftKey ? 10 : event.altKey ? 0.1 : 1;
-      editor.nudge(step.map((value) => value * px));
+      editor.edits.nudge(step.map((value) => value * px));
       event.preventDefault();
       return;
     }

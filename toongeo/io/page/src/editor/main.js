@@ -1,13 +1,13 @@
 // The landmark editor as a page, and as a widget of a notebook (the default export is what anywidget asks for).
 import { httpBackend, widgetBackend } from './backend.js';
 import { Editor } from './editor.js';
+import { scripted } from './scripted.js';
 
 const settings = document.getElementById('editor-settings');
 if (settings) {
   const known = JSON.parse(settings.textContent);
   const editor = new Editor(document.getElementById('editor'), known, httpBackend(known.token));
-  // For scripts: window.toongeo.points()
-  window.toongeo = editor.scripted();
+  window.toongeo = scripted(editor);
   editor.start();
 }
 

@@ -11,7 +11,6 @@ export class Overlay {
     this.model = this.add('path', 'model');
     this.points = settings.names.map(() => this.add('circle', 'point'));
     this.band = this.add('rect', 'band');
-    this.target = this.add('circle', 'target');
   }
 
   add(tag, name) {
@@ -21,7 +20,7 @@ export class Overlay {
     return element;
   }
 
-  // `marks`: selection (Set), part (points under the pointer), fitted (places of the fitted face) or null.
+  // Marks: selection (Set), near (the point under the pointer) and fitted (places of the fitted face), or null.
   draw(view, { points, missing, confidence }, { selection, near, fitted }) {
     const places = points.map((point) => view.toScreen(point));
     const [right, left] = this.settings.eyes.map((k) => places[k]);

@@ -32,6 +32,7 @@ export class Placing {
   }
 
   begin() {
+    if (this.isOn || !this.editor.isOpen) return;
     this.isOn = true;
     this.before = this.editor.state;
     this.clicks = this.before.points.map(() => null);
