@@ -32,7 +32,7 @@ def test_a_face_that_is_not_found_stands_in_the_middle(folder, detector):
     session = EditorSession(PictureList(folder), raises if detector == "raises" else detector)
     opened = session.answer("open", {"picture": 0})
     points = np.array(opened["points"])
-    assert opened["source"] == "mean" and "confidence" not in opened
+    assert opened["source"] == "mean" and not any(opened["confidence"])
     assert (points > 0).all() and (points < [336, 400]).all()
     assert session.answer("detect", {"picture": 0}) == {"points": None}
 

@@ -94,7 +94,7 @@ class EditorSession:
             return answer | {"source": "file", "points": points.tolist(), "missing": missing.tolist()}
         found = self._found(img)
         if found is None:
-            return answer | {"source": "mean", "points": _first_guess(img).tolist()}
+            return answer | {"source": "mean", "points": _first_guess(img).tolist(), "confidence": [0.0] * 68}
         return answer | {"source": "detected"} | found
 
     def _detect(self, message: dict[str, Any]) -> dict[str, Any]:

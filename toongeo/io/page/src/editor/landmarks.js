@@ -1,7 +1,7 @@
 // The points of a picture, and what was done to them. A state is never changed: each step makes a new one.
 const MOST_STEPS = 500;
 
-// `confidence` is null for points that a person placed.
+// `confidence` is null for points that a person placed, 0 for those that are guessed from others.
 export function state(points, missing = null, confidence = null) {
   return {
     points: points.map(([x, y]) => [x, y]),

@@ -71,11 +71,15 @@ export class Panel {
       const state = missing[k] ? 'missing' : sureness(confidence[k]);
       option.setAttribute('aria-selected', String(selection.has(k)));
       option.className = state;
-      option.lastChild.textContent = missing[k] ? 'missing' : confidence[k] === null ? '' : `${Math.round(100 * confidence[k])} %`;
+      option.lastChild.textContent = missing[k] ? 'missing' : sure(confidence[k]);
     });
     parts.points.setAttribute('aria-activedescendant', this.options[this.cursor].id);
     if (only !== null && document.activeElement === parts.points) this.options[only].scrollIntoView({ block: 'nearest' });
   }
+}
+
+function sure(confidence) {
+  return confidence === null ? '' : confidence === 0 ? 'guessed' : `${Math.round(100 * confidence)} %`;
 }
 
 export function make(tag, attributes = {}, text = null) {

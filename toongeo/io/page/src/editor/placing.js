@@ -106,7 +106,8 @@ export class Placing {
     const asked = [...this.clicks];
     const answer = await this.editor.ask('place', { clicks: asked });
     if (!answer || !this.isOn || asked.some((click, k) => click !== this.clicks[k])) return;
-    this.editor.preview(state(answer.points.map((point) => point.map(rounded))));
+    const guessed = asked.map((click) => (click ? null : 0));
+    this.editor.preview(state(answer.points.map((point) => point.map(rounded)), null, guessed));
   }
 
   end(keep) {
@@ -115,6 +116,6 @@ export class Placing {
     this.ask(false);
     if (keep && this.count >= this.settings.fewestClicks) this.editor.commit();
     else this.editor.preview(null);
-    this.editor.say(keep ? 'Placed. Drag what is off.' : 'Points are as before');
+    this.editor.say(keep ? 'Placed. Orange points are guessed: drag those that are off.' : 'Points are as before');
   }
 }
