@@ -9,11 +9,11 @@ from tests.web.editing import (
     SCALE,
     SELECTED,
     TRUTH,
-    Found,
     a_picture,
     at,
     at_px,
     button,
+    found,
     press,
     results,
     says,
@@ -29,7 +29,7 @@ ROUNDED = 0.006  # px: places are kept to a hundredth
 def test_detect_drag_undo_save(tmp_path, browse):
     """The way of a user, and that nobody else hears of it."""
     a_picture(tmp_path)
-    with serving(tmp_path, lambda img: Found()) as server:
+    with serving(tmp_path, found) as server:
         steps = [
             READY,
             POINTS,
@@ -54,8 +54,8 @@ def test_detect_drag_undo_save(tmp_path, browse):
         ]
         report, _ = browse(server.url, steps)
         origin = server.url.partition("?")[0]
-    found, confidence, before, dragged, after, part, selection, undone, saved, fetched = results(report)
-    np.testing.assert_array_equal(found, TRUTH)
+    detected, confidence, before, dragged, after, part, selection, undone, saved, fetched = results(report)
+    np.testing.assert_array_equal(detected, TRUTH)
     assert confidence == [0.25] * 17 + [0.95] * 51
     scale = before[2]
     step = np.zeros((68, 2))
@@ -160,7 +160,7 @@ def test_a_folder_and_files_that_are_there(tmp_path, browse):
     write_landmarks(tmp_path / "z.pts", TRUTH)
     (tmp_path / "damaged.png").write_bytes(b"no picture")
     where = {"run": f"[{text('name')}, {text('count')}]"}
-    with serving(tmp_path, lambda img: Found()) as server:
+    with serving(tmp_path, found) as server:
         steps = [
             says("status", "path: expected a picture"),
             where,

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tests.app.editor.serving import serving
-from tests.web.editing import POINTS, READY, SCALE, SELECTED, TRUTH, Found, a_picture, at, button, press, results, text
+from tests.web.editing import POINTS, READY, SCALE, SELECTED, TRUTH, a_picture, at, button, found, press, results, text
 from toongeo.io import write_landmarks
 from toongeo.model.ibug68 import PARTS
 
@@ -83,7 +83,7 @@ def test_everyone_can_use_it(tmp_path, browse, size):
     a_picture(tmp_path)
     rules = {"axe": "document"}
     asking = [button("clicks"), rules, button("cancel"), press("?"), rules, {"click": "dialog button"}]
-    with serving(tmp_path, lambda img: Found()) as server:
+    with serving(tmp_path, found) as server:
         steps = [
             {"size": size},
             READY,

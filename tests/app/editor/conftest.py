@@ -1,20 +1,14 @@
 """A picture in a folder of its own, and a detector that stands in for a real one."""
 
 import shutil
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 from tests.conftest import PORTRAITS
+from toongeo.protocols import LandmarkDetection
 
 NAME = "moustache_man"
-
-
-@dataclass
-class Found:
-    points: np.ndarray
-    confidence: np.ndarray
 
 
 @pytest.fixture
@@ -34,4 +28,4 @@ def truth(cartoon):
 def detector(truth):
     """Finds the picture's own landmarks, the first half of them hardly sure."""
     confidence = np.where(np.arange(68) < 34, 0.25, 0.95)
-    return lambda img: Found(truth, confidence)
+    return lambda img: LandmarkDetection(truth, confidence, 1.0)

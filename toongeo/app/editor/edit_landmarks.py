@@ -2,18 +2,25 @@
 
 import contextlib
 import webbrowser
+from functools import partial
 from pathlib import Path
 
 from toongeo.app.editor.editor_server import EditorServer
 from toongeo.app.editor.editor_session import EditorSession
 from toongeo.app.editor.picture_list import PictureList
-from toongeo.app.editor.shipped_detector import shipped_detector
+from toongeo.pipeline import detect_landmarks
 
 __all__ = ["edit_landmarks"]
 
 
 def edit_landmarks(
-    path: Path, *, landmarks: Path | None = None, output: Path | None = None, port: int = 0, show: bool = True
+    path: Path,
+    *,
+    landmarks: Path | None = None,
+    output: Path | None = None,
+    face: int = 0,
+    port: int = 0,
+    show: bool = True,
 ) -> None:
     """Serve the editor on the loopback interface until interrupted.
 
@@ -25,6 +32,8 @@ def edit_landmarks(
         Where to start; else the file beside the picture, else what is detected.
     output : Path, optional
         Where to save; else beside the picture.
+    face : int
+        Which face is detected: 0 is the largest.
     port : int
         0 takes a free one.
     show : bool
@@ -33,9 +42,12 @@ def edit_landmarks(
     Raises
     ------
     OSError, ValueError
-        If a file cannot be read or is not what it should be, the output would be the picture, or the port is taken.
+        If a file cannot be read or is not what it should be, the output would be the picture, the port is taken, or
+        `face` is negative.
     """
-    session = EditorSession(PictureList(path, landmarks, output), shipped_detector())
+    if face < 0:
+        raise ValueError(f"face: expected 0 for the largest face, 1 for the next, ..., got {face}")
+    session = EditorSession(PictureList(path, landmarks, output), partial(detect_landmarks, face=face))
     with EditorServer(session, port) as server, contextlib.suppress(KeyboardInterrupt):
         print(f"editor: {server.url}\nCtrl+C ends", flush=True)
         if show:

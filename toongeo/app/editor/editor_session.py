@@ -109,7 +109,7 @@ class EditorSession:
             return None
         if found is None:
             return None
-        return {"points": np.asarray(found.points).tolist(), "confidence": np.asarray(found.confidence).tolist()}
+        return {"points": found.points.tolist(), "confidence": found.confidence.tolist()}
 
     def _place(self, message: dict[str, Any]) -> dict[str, Any]:
         return {"points": place_landmarks(read_points(message.get("clicks"), "clicks")).tolist()}

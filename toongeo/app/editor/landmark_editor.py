@@ -12,9 +12,9 @@ from toongeo.app.editor.anywidget_adapter import notebook_widget
 from toongeo.app.editor.editor_session import EditorSession
 from toongeo.app.editor.editor_settings import editor_settings
 from toongeo.app.editor.protocols import Detector
-from toongeo.app.editor.shipped_detector import shipped_detector
 from toongeo.arrays import Bytes, Floats
 from toongeo.io import check_image, landmark_array
+from toongeo.pipeline import detect_landmarks
 
 __all__ = ["LandmarkEditor"]
 
@@ -30,8 +30,7 @@ class LandmarkEditor:
     landmarks : (68, 2) array_like, px, optional
         Where to start; NaN rows are missing. Else they are detected, or placed by clicks.
     detector : callable, optional
-        Gives a picture's ``points`` (68, 2) px and ``confidence`` (68,), or None if it sees no face; the library's own
-        unless given.
+        Gives the `LandmarkDetection` of a picture, or None if it sees no face.
 
     Raises
     ------
@@ -41,11 +40,13 @@ class LandmarkEditor:
         If the picture or the landmarks are not as above.
     """
 
-    def __init__(self, img: Bytes, landmarks: ArrayLike | None = None, *, detector: Detector | None = None) -> None:
+    def __init__(
+        self, img: Bytes, landmarks: ArrayLike | None = None, *, detector: Detector = detect_landmarks
+    ) -> None:
         check_image(img)
         self._picture = _OnePicture(img, None if landmarks is None else landmark_array(landmarks))
-        self._session = EditorSession(self._picture, detector or shipped_detector())
-        settings = editor_settings() | {"detector": self._session.detector is not None, "isWidget": True}
+        self._session = EditorSession(self._picture, detector)
+        settings = editor_settings() | {"detector": True, "isWidget": True}
         self.widget = notebook_widget(settings, self._hear)
 
     @property

@@ -4,28 +4,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-import numpy as np
-
 from toongeo.arrays import Bytes, Floats
+from toongeo.protocols import LandmarkDetection
 
-__all__ = ["Detector", "FoundLandmarks", "Pictures"]
-
-
-class FoundLandmarks(Protocol):
-    """A face that was found in a picture."""
-
-    @property
-    def points(self) -> np.ndarray:
-        """(68, 2) px."""
-        ...
-
-    @property
-    def confidence(self) -> np.ndarray:
-        """(68,) in [0, 1]."""
-        ...
+__all__ = ["Detector", "Pictures"]
 
 
-Detector = Callable[[Bytes], FoundLandmarks | None]
+Detector = Callable[[Bytes], LandmarkDetection | None]
 
 
 class Pictures(Protocol):
