@@ -10,7 +10,6 @@ from toongeo.protocols import LandmarkDetection
 
 NAME = "moustache_man"
 TRUTH = read_landmarks(PORTRAITS / f"{NAME}.pts")
-LOADED = {"wait": "document.querySelector('[data-ready]')"}
 READY = {"wait": "document.querySelector('[data-ready]') && toongeo.fits() > 0"}
 POINTS = {"run": "toongeo.points()"}
 SELECTED = {"run": "toongeo.selection()"}

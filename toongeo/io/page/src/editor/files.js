@@ -59,7 +59,7 @@ export class Files {
     const { editor } = this;
     if (answer.source === 'mean') editor.placing.begin();
     else this.frame(answer.points);
-    const texts = { file: 'Points were read from a file', detected: 'A face was found: look at the orange points first', mean: '' };
+    const texts = { file: 'Points were read from a file', detected: 'A face was found: look at the orange points first', mean: editor.settings.detector ? 'No face was found: place it by clicks' : '' };
     editor.say(answer.note || texts[answer.source], Boolean(answer.note));
   }
 
