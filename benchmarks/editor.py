@@ -35,7 +35,9 @@ def main() -> None:
     print("|---|---|---|---|")
     for folder in folders:
         pictures = PictureList(folder)
-        everyone = [points for k in range(len(pictures)) if (points := pictures.landmarks(k)) is not None]
+        everyone = [
+            points for k in range(len(pictures)) if (points := pictures.landmarks(k, pictures.picture(k))) is not None
+        ]
         for count in COUNTS:
             columns = [[left(way, points, count) for points in everyone] for way in (place_landmarks, mean_face)]
             print(

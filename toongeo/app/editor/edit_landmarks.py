@@ -33,7 +33,7 @@ def edit_landmarks(
     output : Path, optional
         Where to save; else beside the picture.
     face : int
-        Which face is detected: 0 is the largest.
+        Which face of the file or, by size, of the picture.
     port : int
         0 takes a free one.
     show : bool
@@ -47,7 +47,7 @@ def edit_landmarks(
     """
     if face < 0:
         raise ValueError(f"face: expected 0 for the largest face, 1 for the next, ..., got {face}")
-    session = EditorSession(PictureList(path, landmarks, output), partial(detect_landmarks, face=face))
+    session = EditorSession(PictureList(path, landmarks, output, face=face), partial(detect_landmarks, face=face))
     with EditorServer(session, port) as server, contextlib.suppress(KeyboardInterrupt):
         print(f"editor: {server.url}\nCtrl+C ends", flush=True)
         if show:

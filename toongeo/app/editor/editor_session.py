@@ -85,7 +85,7 @@ class EditorSession:
         height, width = img.shape[:2]
         answer = {"width": width, "height": height, "suffix": self.pictures.target(k).suffix.lower(), "note": ""}
         try:
-            points = self.pictures.landmarks(k)
+            points = self.pictures.landmarks(k, img)
         except (ValueError, OSError) as error:
             points, answer["note"] = None, str(error)
         if points is not None:

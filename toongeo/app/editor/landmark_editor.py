@@ -52,7 +52,7 @@ class LandmarkEditor:
     @property
     def landmarks(self) -> Floats | None:
         """Copy of the points (68, 2) px as they are now, NaN where missing; None as long as there are none."""
-        return self._picture.landmarks(0)
+        return self._picture.landmarks(0, self._picture.picture(0))
 
     def _repr_mimebundle_(self, **options: Any) -> Any:
         return self.widget._repr_mimebundle_(**options)
@@ -85,7 +85,7 @@ class _OnePicture:
     def picture(self, k: int) -> Bytes:
         return self._img
 
-    def landmarks(self, k: int) -> Floats | None:
+    def landmarks(self, k: int, img: Bytes) -> Floats | None:
         return None if self._landmarks is None else self._landmarks.copy()
 
     def is_done(self, k: int) -> bool:

@@ -10,7 +10,7 @@ from toongeo.io import read_image, read_landmarks, write_landmarks
 
 __all__ = ["FORMATS", "PictureList"]
 
-FORMATS = (".pts", ".json", ".csv", ".txt", ".npy")  # first the one that other tools know best
+FORMATS = (".pts", ".json", ".csv", ".txt", ".npy", ".ljson")  # first the one that other tools know best
 _PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
 
 
@@ -25,6 +25,8 @@ class PictureList:
         Where a single picture's landmarks are read; else from the file beside it that bears its name.
     output : Path, optional
         Where a single picture's landmarks are saved; else beside it under its name.
+    face : int
+        Which face of a file that holds several.
 
     Raises
     ------
@@ -35,8 +37,8 @@ class PictureList:
         unknown format or is the picture.
     """
 
-    def __init__(self, path: Path, given: Path | None = None, output: Path | None = None) -> None:
-        self._given, self._output = given, output
+    def __init__(self, path: Path, given: Path | None = None, output: Path | None = None, *, face: int = 0) -> None:
+        self._given, self._output, self._face = given, output, face
         self._written: set[Path] = set()
         if path.is_dir():
             if given is not None or output is not None:
@@ -46,9 +48,9 @@ class PictureList:
                 raise ValueError(f"path: expected a folder with pictures, but there are none in {path}")
             return
         self._paths = [path]
-        read_image(path)
+        img = read_image(path)
         if given is not None:
-            read_landmarks(given)
+            read_landmarks(given, size=img, face=face)
         if output is not None:
             self._check(path, output)
 
@@ -63,10 +65,15 @@ class PictureList:
         """Pixels (H, W, 3) of a picture; raises what :func:`toongeo.read_image` does."""
         return read_image(self._paths[k])
 
-    def landmarks(self, k: int) -> Floats | None:
-        """Landmarks (68, 2) px of a picture, None if it has no file; raises as :func:`toongeo.read_landmarks` does."""
+    def landmarks(self, k: int, img: Bytes) -> Floats | None:
+        """Landmarks (68, 2) px of a picture, None if it has no file; raises as :func:`toongeo.read_landmarks` does.
+
+        The picture tells what shares of its size mean.
+        """
         file = self._file(k)
-        return None if file is None else read_landmarks(file)
+        if file is None:
+            return None
+        return read_landmarks(file, size=img, face=0 if file in self._written else self._face)
 
     def is_done(self, k: int) -> bool:
         """Whether a picture has a file of landmarks."""

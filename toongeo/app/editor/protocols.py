@@ -28,8 +28,8 @@ class Pictures(Protocol):
         """Pixels (H, W, 3)."""
         ...
 
-    def landmarks(self, k: int) -> Floats | None:
-        """(68, 2) px, NaN where missing; None if it has none yet."""
+    def landmarks(self, k: int, img: Bytes) -> Floats | None:
+        """(68, 2) px, NaN where missing, of a picture (H, W, 3); None if it has none yet."""
         ...
 
     def is_done(self, k: int) -> bool:
