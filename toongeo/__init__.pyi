@@ -1,5 +1,6 @@
 """The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
+from toongeo.app.editor.landmark_editor import LandmarkEditor as LandmarkEditor
 from toongeo.avatar import Avatar as Avatar
 from toongeo.avatar import load_avatar as load_avatar
 from toongeo.avatar import make_avatar as make_avatar

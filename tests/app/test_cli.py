@@ -162,6 +162,26 @@ def test_the_module_runs_as_a_program():
     assert done.stdout.startswith("toongeo ")
 
 
+def test_landmarks_opens_the_editor(tmp_path, monkeypatch, capsys):
+    from toongeo.app.editor.editor_server import EditorServer
+
+    def interrupt(server):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(EditorServer, "serve_forever", interrupt)
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    assert main(["landmarks", str(PICTURE), "--landmarks", str(POINTS), "-o", str(tmp_path / "a.json")]) == 0
+    address = capsys.readouterr().out.splitlines()[0].removeprefix("editor: ")
+    assert opened == [address] and address.startswith("http://127.0.0.1:")
+    assert main(["landmarks", str(PICTURE), "--no-browser"]) == 0 and len(opened) == 1
+    capsys.readouterr()
+    assert main(["landmarks", str(PICTURE), "-o", str(PICTURE)]) == 2
+    assert "output: expected one of" in capsys.readouterr().err
+    assert main(["landmarks", str(PICTURE), "--face", "-1"]) == 2
+    assert "face: expected 0 for the largest face" in capsys.readouterr().err
+
+
 def test_make_takes_landmark_files_of_other_programs(tmp_path, capsys, monkeypatch):
     """By their number of points or by name, and shares of the picture by its size."""
     import numpy as np

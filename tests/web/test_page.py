@@ -195,7 +195,7 @@ def test_the_page_is_escaped_and_sealed(tmp_path):
         page_html(b"PK", title="zip")
 
 
-def test_the_bundle_is_what_its_sources_give(tmp_path):
+def test_the_bundles_are_what_their_sources_give(tmp_path):
     """Rebuilt with the versions of package-lock.json, byte for byte."""
     npm = shutil.which("npm")
     required = os.environ.get("TOONGEO_REQUIRE_WEB") == "1"
@@ -204,4 +204,5 @@ def test_the_bundle_is_what_its_sources_give(tmp_path):
     command = ["node", str(PAGE / "build.mjs"), str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stderr
-    assert Path(tmp_path / "viewer.js").read_bytes() == (PAGE / "viewer.js").read_bytes()
+    for bundle in ("viewer.js", "editor.js"):
+        assert Path(tmp_path / bundle).read_bytes() == (PAGE / bundle).read_bytes(), bundle
