@@ -129,8 +129,8 @@ def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: He
 def _over_skin(face: AlignedFace, plane: WorkingPlane, hair: Mask, head: HeadRaster) -> Mask:
     """Hair before the head. If it is turned at all, what only touches the outline of the jaw comes from behind.
 
-    On the far side of a head that is turned further so does all that touches the outline, and all that is below the eyes: there the
-    nose, of which a fit may fall short, stands before it.
+    On the far side of a head that is turned further so does all that touches the outline, and all that is below the
+    eyes: there the nose, of which a fit may fall short, stands before it.
     """
     over = hair & head.head
     if abs(face.camera.yaw) < _ASKEW:
