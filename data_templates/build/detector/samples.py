@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from multiprocessing import get_context
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-
 from renders.random_head import KINDS
 from renders.render_face import drawn, random_style
 from renders.scene import random_scene
+
+from detector.workers import mapped
 from toongeo.model.ibug68 import MIRROR
 
 __all__ = ["SIZE_PX", "Samples", "mirrored", "rendered_samples"]
@@ -35,9 +35,9 @@ class Samples:
 def rendered_samples(seed: int, heads: int, processes: int) -> Samples:
     """Two drawings of each of so many heads."""
     chunks = [(seed, k, min(k + _CHUNK, heads)) for k in range(0, heads, _CHUNK)]
-    with get_context("fork").Pool(processes) as pool:
-        parts = pool.starmap(_chunk, chunks, chunksize=1)
-    return Samples(*(np.concatenate([getattr(p, name) for p in parts]) for name in ("grey", "landmarks", "kinds", "yaw")))
+    parts = mapped(_chunk, chunks, processes)
+    names = ("grey", "landmarks", "kinds", "yaw")
+    return Samples(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
 
 def mirrored(grey: NDArray[np.uint8], landmarks: NDArray[np.float64]) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
@@ -47,8 +47,8 @@ def mirrored(grey: NDArray[np.uint8], landmarks: NDArray[np.float64]) -> tuple[N
     return np.ascontiguousarray(grey[:, ::-1]), points
 
 
-def _chunk(seed: int, first: int, last: int) -> Samples:
-    cv2.setNumThreads(1)
+def _chunk(chunk: tuple[int, int, int]) -> Samples:
+    seed, first, last = chunk
     grey, landmarks, kinds, yaw = [], [], [], []
     for k in range(first, last):
         rng = np.random.default_rng([seed, k])  # of the head alone: chunks may run in any order

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from multiprocessing import get_context
-
-import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
 
+from detector.linear import principal_axes, ridge_weights, rounded, signed
 from detector.samples import SIZE_PX, Samples
+from detector.workers import mapped
 from toongeo.model.ibug68 import MIRROR
 from toongeo.pipeline.landmarks.search.cascade import Cascade, CascadeStage, realigned, shape_terms
-from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX, SAMPLES, face_crop, point_descriptors
+from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX, face_crop, point_descriptors
 from toongeo.pipeline.landmarks.search.frames import applied, box_matrix, box_of, similarity_onto
 
 __all__ = ["train_cascade"]
@@ -22,7 +20,6 @@ Floats = NDArray[np.float64]
 # Radius of the ring and the two blurs of each stage, px of the crop: from half of the face to half of an eye.
 STAGES = ((22, 4, 7), (18, 3, 5.5), (14, 2.4, 4.2), (10, 1.8, 3.2), (7.5, 1.4, 2.4), (5.5, 1.1, 1.8))
 _AXES, _SHAPES = 40, 20  # coordinates a point; coordinates of the shape so far
-_RIDGES = (0.03, 0.1, 0.3, 1.0)  # of the mean of the diagonal; the best on held-out renders is taken
 _JITTER, _SCALE_JITTER = 0.14, 0.11  # of the start: of the radius, and of the log of the scale
 _PCA_SAMPLES = 4000
 _PARTS = 64  # of the samples, for the processes
@@ -53,12 +50,11 @@ def train_cascade(samples: Samples, held_out: Samples, processes: int, seed: int
         stage = CascadeStage(radius, (near, far), *_axes(pictures, matrices, points, (radius, (near, far)), rng), None)
         rows = _rows(pictures, matrices, points, stage, cascade, processes)
         steps = (targets - points).reshape(len(truth), -1).astype(np.float32)
-        weights, ridge = _ridge(rows, steps, training, testing)
-        weights = weights.astype(np.float16).astype(np.float32)  # as the file keeps them
+        weights, ridge = ridge_weights(rows[training], steps[training], rows[testing], steps[testing])
         points = points + (rows @ weights).reshape(points.shape)
         cascade = Cascade(shape, shape_axes, (*cascade.stages, _with_weights(stage, weights)))
-        say(f"stage {number}: ridge {ridge}, error {_error(points, targets, training):.4f}", end="")
-        say(f" held out {_error(points, targets, testing):.4f}", flush=True)
+        errors = (f"{_error(points, targets, chosen):.4f}" for chosen in (training, testing))
+        say(f"stage {number}: ridge {ridge}, error, held out: " + ", ".join(errors), flush=True)
     return cascade
 
 
@@ -70,35 +66,22 @@ def mean_shape(landmarks: Floats) -> Floats:
         mean = np.mean([applied(similarity_onto(s, mean), s) for s in shapes], axis=0)
         mean = (mean + mean[MIRROR] * [-1, 1]) / 2
         mean = mean - mean.mean(axis=0)
-        tilt = mean[[36, 45], 1]
-        assert abs(tilt[0] - tilt[1]) < 1e-9
         mean = mean / np.sqrt((mean**2).sum(axis=1).mean())
     return mean * RADIUS_PX + CROP_PX / 2
 
 
 def _shape_axes(offsets: Floats) -> NDArray[np.float32]:
     _, axes = np.linalg.eigh(np.cov(offsets.T))
-    return _signed(axes[:, ::-1][:, :_SHAPES]).astype(np.float16).astype(np.float32)
-
-
-def _signed(axes: Floats) -> Floats:
-    """Axes (d, k) with their largest component positive: eigenvectors have no sign of their own."""
-    largest = np.abs(axes).argmax(axis=0)
-    return axes * np.sign(axes[largest, np.arange(axes.shape[1])])
+    return rounded(signed(axes[:, ::-1][:, :_SHAPES]))
 
 
 def _axes(pictures, matrices, points, kind, rng) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Means (68, d) and principal axes (68, d, c) of the descriptors."""
     radius, blurs = kind
     chosen = rng.choice(len(points), min(_PCA_SAMPLES, len(points)), replace=False)
-    found = np.array([point_descriptors(face_crop(_picture(pictures, k), matrices[k]), points[k], radius, blurs) for k in chosen])
-    mean, axes = np.empty((68, SAMPLES * 8)), np.empty((68, SAMPLES * 8, _AXES))
-    for j in range(68):
-        mean[j] = found[:, j].mean(axis=0)
-        centred = found[:, j].astype(np.float64) - mean[j]
-        _, vectors = np.linalg.eigh(centred.T @ centred)
-        axes[j] = _signed(vectors[:, ::-1][:, :_AXES])
-    return tuple(a.astype(np.float16).astype(np.float32) for a in (mean, axes))
+    crops = (face_crop(_picture(pictures, k), matrices[k]) for k in chosen)
+    found = [point_descriptors(crop, points[k], radius, blurs) for crop, k in zip(crops, chosen, strict=True)]
+    return principal_axes(np.array(found), _AXES)
 
 
 def _picture(pictures: NDArray[np.uint8], k: int) -> NDArray[np.uint8]:
@@ -112,12 +95,10 @@ def _rows(pictures, matrices, points, stage, cascade, processes) -> NDArray[np.f
     global _SHARED
     _SHARED = pictures, matrices, points, stage, cascade
     pieces = np.array_split(np.arange(len(points)), _PARTS)
-    with get_context("fork").Pool(processes) as pool:
-        return np.concatenate(pool.map(_rows_of, pieces, chunksize=1))
+    return np.concatenate(mapped(_rows_of, pieces, processes))
 
 
 def _rows_of(chosen: NDArray[np.int64]) -> NDArray[np.float32]:
-    cv2.setNumThreads(1)
     pictures, matrices, points, stage, cascade = _SHARED
     out = np.empty((len(chosen), 68 * _AXES + _SHAPES + 1), np.float32)
     for row, k in zip(out, chosen, strict=True):
@@ -125,21 +106,6 @@ def _rows_of(chosen: NDArray[np.int64]) -> NDArray[np.float32]:
         row[68 * _AXES : -1] = shape_terms(points[k], cascade)
         row[-1] = 1
     return out
-
-
-def _ridge(rows, steps, training: slice, testing: slice) -> tuple[NDArray[np.float32], float]:
-    """Weights and the ridge with the smallest error on the testing rows."""
-    gram, sides = rows[training].T @ rows[training], rows[training].T @ steps[training]
-    best, unit = (np.inf, None, 0.0), np.trace(gram) / len(gram)
-    for ridge in _RIDGES:
-        normal = gram.astype(np.float64)
-        normal[np.diag_indices_from(normal)] += ridge * unit
-        weights = cho_solve(cho_factor(normal, overwrite_a=True), sides.astype(np.float64)).astype(np.float32)
-        left = (steps[testing] - rows[testing] @ weights).reshape(-1, 68, 2)
-        error = float(np.linalg.norm(left, axis=2).mean())
-        if error < best[0]:
-            best = error, weights, ridge
-    return best[1], best[2]
 
 
 def _with_weights(stage: CascadeStage, weights) -> CascadeStage:

@@ -3,8 +3,8 @@
 usage: OPENBLAS_NUM_THREADS=1 PYTHONPATH=.:data_templates/build \\
        python data_templates/build/hair/train_hair.py [--pictures N] [--out FILE]
 
-Takes about fifteen minutes on one core and 4 GB. Nothing but the template is looked at: no photograph, no drawing. The
-same machine gives the same bytes. It prints how the trees do on the half of the renders that they were not grown on.
+Takes about ten minutes on one core and 4 GB. No picture of anyone is looked at, only renders of the template. The same
+machine gives the same bytes. It prints how the trees do on the half of the renders that they were not grown on.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from toongeo.pipeline.parse.hair.boosted_trees import BoostedTrees
 
 OUT = Path(__file__).parents[2] / "hair.npz"
 SEED = 7
-ROUNDS, DEPTH = 50, 5
+ROUNDS, DEPTH = 60, 5
 PER_PICTURE = 300  # superpixels: so that large pictures do not count more
 
 
@@ -69,7 +69,7 @@ def overlap_of(guess: np.ndarray, case: TrainingRows) -> float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--pictures", type=int, default=560)
+    parser.add_argument("--pictures", type=int, default=960)
     parser.add_argument("--out", type=Path, default=OUT)
     options = parser.parse_args()
     first, second = trained([rows_of(k) for k in range(options.pictures)])

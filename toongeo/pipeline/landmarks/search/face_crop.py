@@ -23,13 +23,13 @@ _WHOLE_CELL = 8
 _WHOLE_FLOOR = 1.0
 
 
-def face_crop(grey: NDArray[np.uint8], matrix: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """(160, 160) of the picture under a (2, 3) similarity that scales by about one: no antialiasing is done."""
-    return cv2.warpAffine(grey, matrix, (CROP_PX, CROP_PX), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+def face_crop(grey: np.ndarray, matrix: NDArray[np.float64], size: int = CROP_PX) -> np.ndarray:
+    """(size, size) of the picture under a (2, 3) similarity; it may shrink only a little: nothing is antialiased."""
+    return cv2.warpAffine(grey, matrix, (size, size), flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
 
 
 def point_descriptors(
-    crop: NDArray[np.uint8], points: NDArray[np.float64], radius: float, blurs: tuple[float, float]
+    crop: np.ndarray, points: NDArray[np.float64], radius: float, blurs: tuple[float, float]
 ) -> NDArray[np.float32]:
     """(k, 17 * 8) float32: orientation maps at each point (k, 2), in a ring near it and in one of a radius (px).
 
@@ -38,8 +38,9 @@ def point_descriptors(
     maps = orientation_maps(crop, _CELL, _PREBLUR)
     near, far = ([cv2.GaussianBlur(half, (0, 0), blur / _CELL) for half in maps] for blur in blurs)
     places = points[:, None] + radius * _OFFSETS
-    cells = np.clip(np.rint((places - 0.5) / _CELL).astype(np.int64), 0, CROP_PX // _CELL - 1)
-    index = cells[..., 1] * (CROP_PX // _CELL) + cells[..., 0]
+    side = crop.shape[0] // _CELL
+    cells = np.clip(np.rint((places - 0.5) / _CELL).astype(np.int64), 0, side - 1)
+    index = cells[..., 1] * side + cells[..., 0]
     split = 1 + _RING
     out = np.empty((len(points), SAMPLES, 8), np.float32)
     for k in range(2):
@@ -49,7 +50,7 @@ def point_descriptors(
     return rows / (np.sqrt(np.einsum("kd,kd->k", rows, rows)) + np.float32(_FLOOR))[:, None]
 
 
-def whole_descriptor(crop: NDArray[np.uint8]) -> NDArray[np.float32]:
+def whole_descriptor(crop: np.ndarray) -> NDArray[np.float32]:
     """(4000,) float32: orientation histograms of the crop in cells of 8 and 16 px, normalised by their surroundings."""
     fine = np.concatenate(orientation_maps(crop, _WHOLE_CELL, _PREBLUR), axis=2)
     side = len(fine) // 2
@@ -58,5 +59,7 @@ def whole_descriptor(crop: NDArray[np.uint8]) -> NDArray[np.float32]:
 
 
 def _normalised(histograms: NDArray[np.float32], window: int) -> NDArray[np.float32]:
-    energy = cv2.blur(np.einsum("yxk,yxk->yx", histograms, histograms), (window, window), borderType=cv2.BORDER_REPLICATE)
+    energy = cv2.blur(
+        np.einsum("yxk,yxk->yx", histograms, histograms), (window, window), borderType=cv2.BORDER_REPLICATE
+    )
     return np.minimum(np.sqrt(histograms / (np.sqrt(np.maximum(energy, 0)) + _WHOLE_FLOOR)[..., None]), 1.5)

@@ -2,19 +2,15 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 __all__ = ["DIRECTIONS", "orientation_maps"]
 
-DIRECTIONS = 8
-_SHARPNESS = np.cos(2 * np.pi / DIRECTIONS)  # a direction counts for its two neighbours at most, as in a histogram
-_ANGLES = np.arange(DIRECTIONS) * (2 * np.pi / DIRECTIONS)
-_LOBES = np.stack([np.cos(_ANGLES), np.sin(_ANGLES), np.full(DIRECTIONS, -_SHARPNESS)], axis=1).astype(np.float32)
-_LOBES /= np.float32(1 - _SHARPNESS)
-_SOBEL = 1 / 4  # grey levels a px
+DIRECTIONS = 8  # multiples of 45 degrees, from x (right) towards y (down)
+_COS = np.float32(np.sqrt(0.5))  # of 45 degrees: a gradient counts for its two neighbours at most, as in a histogram
+_SOBEL = 1 / 4  # of Sobel's sums, which are eight times the slope
 
 
-def orientation_maps(grey: NDArray[np.uint8], cell: int, blur: float) -> tuple[NDArray[np.float32], ...]:
+def orientation_maps(grey: np.ndarray, cell: int, blur: float) -> tuple[np.ndarray, np.ndarray]:
     """Gradient strength by direction, averaged over cells: two arrays (h // cell, w // cell, 4) float32.
 
     A gradient g counts for the direction d with ``max(0, g.d - |g| cos 45) / (1 - cos 45)``: nearly the soft
@@ -27,15 +23,32 @@ def orientation_maps(grey: NDArray[np.uint8], cell: int, blur: float) -> tuple[N
         Side of a cell in px; h and w are its multiples.
     blur : float
         Standard deviation in px of the blur before.
+
+    Returns
+    -------
+    (h // cell, w // cell, 4) float32, twice
+        The directions 0, 45, 90, 135 degrees, and those opposite to them; twice the grey levels a px.
+
+    Examples
+    --------
+    >>> ramp = np.tile(np.arange(0, 64, 2, dtype=np.uint8), (32, 1))
+    >>> ahead, back = orientation_maps(ramp, 8, 0.8)
+    >>> ahead[1, 1].round(3) + 0, back[1, 1].max()  # 2 grey levels a px to the right
+    (array([4., 0., 0., 0.], dtype=float32), np.float32(0.0))
     """
     smooth = cv2.GaussianBlur(grey, (0, 0), blur)
-    across = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=_SOBEL)
-    down = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=_SOBEL)
-    slopes = cv2.merge([across, down, cv2.magnitude(across, down)])
+    scale = _SOBEL / (1 - float(_COS))
+    across = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, scale=scale)
+    down = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, scale=scale)
+    # cv2.magnitude would give other last bits for other addresses of its arrays.
+    least = np.sqrt(across * across + down * down) * _COS
+    along = (across, (across + down) * _COS, down, (down - across) * _COS)
     size = grey.shape[1] // cell, grey.shape[0] // cell
-    maps = []
-    for half in (_LOBES[:4], _LOBES[4:]):  # OpenCV takes four channels at a time
-        strength = cv2.transform(slopes, half)
+
+    def averaged(strength: np.ndarray) -> np.ndarray:
         np.maximum(strength, 0, out=strength)
-        maps.append(cv2.resize(strength, size, interpolation=cv2.INTER_AREA))
-    return tuple(maps)
+        return cv2.resize(strength, size, interpolation=cv2.INTER_AREA)
+
+    ahead = cv2.merge([averaged(a - least) for a in along])
+    back = cv2.merge([averaged(-a - least) for a in along])
+    return ahead, back

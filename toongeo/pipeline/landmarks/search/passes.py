@@ -15,6 +15,7 @@ __all__ = ["FacePatch", "Passes", "face_patch", "run_passes"]
 
 _PATCH_RADIUS_PX = 45.0  # of the face in the patch: as in the renders the cascade was trained on
 _PATCH_MARGIN = 4.5  # radii on each side: the crop's corners, turned and moved
+_FIRST_LOOK = 3  # starts: enough to tell a face from clutter
 # Starts about a face: shift in radii (x, y) and factor of the radius.
 _STARTS = np.array(
     [
@@ -23,10 +24,6 @@ _STARTS = np.array(
         (-0.12, 0.05, 0.93),
         (0.05, -0.12, 0.95),
         (-0.05, -0.1, 1.07),
-        (0, 0.14, 1),
-        (0.1, -0.05, 0.9),
-        (-0.1, -0.02, 1.12),
-        (0, 0, 0.85),
     ]
 )
 
@@ -35,7 +32,7 @@ _STARTS = np.array(
 class FacePatch:
     """A cut-out `grey` (h, w) uint8 in which a face has the size the cascade knows; `matrix` (2, 3) leads to it."""
 
-    grey: NDArray[np.uint8]
+    grey: np.ndarray
     matrix: NDArray[np.float64]
 
 
@@ -47,7 +44,7 @@ class Passes:
     spread: NDArray[np.float64]
 
 
-def face_patch(grey: NDArray[np.uint8], box: NDArray[np.float64]) -> FacePatch:
+def face_patch(grey: np.ndarray, box: NDArray[np.float64]) -> FacePatch:
     """The neighbourhood of a box (x, y, r), shrunken without aliasing if the face is larger than needed."""
     scale = min(1.0, _PATCH_RADIUS_PX / box[2])
     height, width = grey.shape
@@ -62,16 +59,20 @@ def face_patch(grey: NDArray[np.uint8], box: NDArray[np.float64]) -> FacePatch:
     return FacePatch(np.ascontiguousarray(small), matrix)
 
 
-def run_passes(
-    grey: NDArray[np.uint8], points: NDArray[np.float64], cascade: Cascade, starts: slice, mirror: bool
-) -> Passes:
-    """The cascade from starts about a face found roughly at `points` (68, 2) px, and from their mirror images."""
+def run_passes(grey: np.ndarray, points: NDArray[np.float64], cascade: Cascade, *, first_look: bool = False) -> Passes:
+    """The cascade from five starts about a face found roughly at `points` (68, 2) px, and from their mirror images.
+
+    The `first_look` is from three, not mirrored, and ends before the parts.
+    """
     start = similarity_onto(points, cascade.shape)
-    found = [cascade.run(grey, _moved(start, move)) for move in _STARTS[starts]]
-    if mirror:
+    if first_look:
+        stages = len(cascade.stages)
+        found = [cascade.rough(grey, _moved(start, move), stages) for move in _STARTS[:_FIRST_LOOK]]
+    else:
+        found = [cascade.run(grey, _moved(start, move)) for move in _STARTS]
         flipped = np.ascontiguousarray(grey[:, ::-1])
         start = similarity_onto(_mirrored(points, grey), cascade.shape)
-        found += [_mirrored(cascade.run(flipped, _moved(start, move)), grey) for move in _STARTS[starts]]
+        found += [_mirrored(cascade.run(flipped, _moved(start, move)), grey) for move in _STARTS]
     every = np.array(found)
     median = np.median(every, axis=0)
     return Passes(median, np.linalg.norm(every - median, axis=2).mean(axis=0) / box_of(median)[2])
@@ -85,5 +86,5 @@ def _moved(start: NDArray[np.float64], move: NDArray[np.float64]) -> NDArray[np.
     return composed(step, start)
 
 
-def _mirrored(points: NDArray[np.float64], grey: NDArray[np.uint8]) -> NDArray[np.float64]:
+def _mirrored(points: NDArray[np.float64], grey: np.ndarray) -> NDArray[np.float64]:
     return points[MIRROR] * [-1, 1] + [grey.shape[1] - 1, 0]

@@ -15,20 +15,22 @@ from toongeo.pipeline.parse.working_view import WorkingView
 __all__ = ["colour_cut", "grab_cut"]
 
 
-_PLACE, _COLOUR = 1.0, 1.0  # weights of the posterior's log-odds and of the colours' evidence
-_CLIP = 0.02  # posteriors are believed up to here
+# Weights of colours and smoothness were looked for on the pictures of benchmarks/hair_mask.py; both halves agreed.
+_COLOUR = 1.0  # weight of the colours' evidence beside the posterior's log-odds
+_LOW_COLOUR = 0.3  # the same about the chin and below: coats often have the hair's colour
 _EVIDENCE = 3.5  # the most that a colour may say
 _SMOOTHNESS = 6.0
+_BELOW = 0.15  # how much the colours below the brows count, where ears and collars may pass for hair
+_CLIP = 0.02  # posteriors are believed up to here
 _SURE = 4.3  # log-odds; the posterior alone gives 3.9 at most
 _NEVER = -6.0
-_BELOW = 0.15  # how much the colours below the brows count, where ears and collars may pass for hair
-_LOW_COLOUR = 0.3  # what the evidence weighs about the chin and below: coats often have the hair's colour
 _LIKELY = 0.6  # posterior of hair from which a flood of the ground is not believed
-_FEWEST = 30  # px that either side of GrabCut needs
-_PASSES = 3
-_ROOM = 0.15  # head sizes about the likely hair that GrabCut looks at
-_COARSE = 2  # the first two cuts are of a picture reduced by this: ten times faster
+_COARSE = 2  # the first cuts are of a picture reduced by this: ten times faster
+_ROUNDS = 2  # of coarse cuts
 _BAND = 0.03  # head sizes about the coarse outline in which the last cut looks for the fine one
+_FEWEST = 30  # px that either side of GrabCut needs
+_PASSES = 3  # of GrabCut
+_ROOM = 0.15  # head sizes about the likely hair that GrabCut looks at
 
 
 def colour_cut(lab: Singles, zones: HeadZones, posterior: Singles, ground: Mask | None) -> Mask:
@@ -36,31 +38,33 @@ def colour_cut(lab: Singles, zones: HeadZones, posterior: Singles, ground: Mask 
 
     ``ground`` are pixels that a flood has reached; it leaks into dark hair on dark ground, so a high posterior wins.
     """
-    clipped = np.clip(posterior, _CLIP, 1 - _CLIP)
-    place = np.log(clipped / (1 - clipped)) * _PLACE
-    barred = zones.core & (posterior < 0.3)
-    barred |= _ground(ground, posterior)
+    barred = (zones.core & (posterior < 0.3)) | _ground(ground, posterior)
     smooth = np.asarray(cv2.bilateralFilter(lab, 5, 8, 2), np.float32)
-    above = np.where(zones.up > 0, 1, _BELOW).astype(np.float32)
-    voice = np.where(zones.up > -0.9, _COLOUR, _LOW_COLOUR).astype(np.float32)
-    near = np.where(grown(posterior > 0.3, 0.3 * zones.head), 1, 0.3).astype(np.float32)
     small = smooth.shape[1] // _COARSE, smooth.shape[0] // _COARSE
     reduced = np.asarray(cv2.resize(smooth, small, interpolation=cv2.INTER_AREA), np.float32)
     weight, cut = posterior, posterior > 0.5
-    for last in (False, False, True):
-        inside = np.clip(weight - 0.1, 0, 1) ** 2 * above
-        outside = np.clip(0.7 - weight, 0, 1) ** 2 * near
-        evidence = np.clip(colour_evidence(lab, inside, outside), -_EVIDENCE, _EVIDENCE)
-        odds = np.where(barred, _NEVER, place + voice * evidence).astype(np.float32)
-        if last:
-            away = signed_distance(cut)
-            sure = np.where(np.abs(away) > _BAND * zones.head, -_NEVER * np.sign(away), odds)
-            return min_cut(np.where(barred, _NEVER, sure).astype(np.float32), smooth, _SMOOTHNESS, _SURE)
+    for _ in range(_ROUNDS):
+        odds = np.where(barred, _NEVER, _odds(lab, zones, posterior, weight)).astype(np.float32)
         coarse = np.asarray(cv2.resize(odds, small, interpolation=cv2.INTER_AREA), np.float32)
         part = min_cut(coarse, reduced, _SMOOTHNESS, _SURE).astype(np.float32)
         cut = cv2.resize(part, cut.shape[::-1], interpolation=cv2.INTER_LINEAR) > 0.5
         weight = 0.5 * posterior + 0.5 * cut.astype(np.float32)
-    return cut
+    away = signed_distance(cut)
+    odds = _odds(lab, zones, posterior, weight)
+    odds = np.where(np.abs(away) > _BAND * zones.head, -_NEVER * np.sign(away), odds)
+    return min_cut(np.where(barred, _NEVER, odds).astype(np.float32), smooth, _SMOOTHNESS, _SURE)
+
+
+def _odds(lab: Singles, zones: HeadZones, posterior: Singles, weight: Singles) -> Singles:
+    """Log-odds (h, w) of hair or hat by the posterior, and by colours learned with weights (h, w) of hair."""
+    clipped = np.clip(posterior, _CLIP, 1 - _CLIP)
+    inside = np.clip(weight - 0.1, 0, 1) ** 2 * np.where(zones.up > 0, 1, _BELOW)
+    near = np.where(grown(posterior > 0.3, 0.3 * zones.head), 1, 0.3)
+    outside = np.clip(0.7 - weight, 0, 1) ** 2 * near
+    evidence = colour_evidence(lab, inside.astype(np.float32), outside.astype(np.float32))
+    voice = np.where(zones.up > -0.9, _COLOUR, _LOW_COLOUR)
+    odds = np.log(clipped / (1 - clipped)) + voice * np.clip(evidence, -_EVIDENCE, _EVIDENCE)
+    return odds.astype(np.float32)
 
 
 def grab_cut(view: WorkingView, zones: HeadZones, posterior: Singles, ground: Mask | None) -> Mask:

@@ -62,15 +62,16 @@ def hair_measures(mask: Mask, other: Mask, zones: HeadZones, posterior: Singles,
     )
 
 
-# Name of the measure, least and largest value that is trusted, and what is said otherwise. Agreement, inside and outside
+# Name of the measure, least and largest value that is trusted, what is said otherwise. Hat was set on renders: half of
+# their hats pass for hair, and hair of drawings reaches 0.19. Agreement, inside and outside
 # were set on the 25 pictures of benchmarks/hair_mask.py, which also sets them on one half and reports the other.
 RULES = (
-    ("area", 0.03, 9.0, "there is hardly any hair"),
-    ("hat", 0.0, 0.5, "a hat covers the hair"),
+    ("area", 0.08, 9.0, "there is hardly any hair"),
+    ("hat", 0.0, 0.2, "a hat covers the hair"),
     ("topped", 0.5, 1.0, "hair does not top the head"),
     ("agreement", 0.88, 1.0, "two ways to cut the hair disagree"),
-    ("inside", 0.65, 1.0, "what looks like hair is doubtful"),
-    ("outside", 0.0, 0.22, "hair seems to go on beyond its outline"),
+    ("inside", 0.75, 1.0, "what looks like hair is doubtful"),
+    ("outside", 0.0, 0.2, "hair seems to go on beyond its outline"),
     ("border", 0.0, 0.35, "the picture's border cuts the hair"),
 )
 

@@ -24,7 +24,7 @@ __all__ = ["SegmentedHair", "segment_hair"]
 
 
 _BLUR = 1.8  # px: superpixels have jagged borders
-_HATS = 0.35  # odds of hats against hair, in pictures to those in renders
+_ALIKE = 0.88  # overlap of the two cuts above which GrabCut's is taken: its outlines are closer, but it strays more
 _HAT = 0.02  # squares of the head's size: smaller hats are none
 _HAT_SHARE = 0.3  # of hair and hat: a smaller hat is hair of another colour
 
@@ -43,23 +43,20 @@ def segment_hair(view: WorkingView, zones: HeadZones, model: HairModel) -> Segme
     """Posterior, two cuts of it, rules of growth, and what the cuts say of each other."""
     lab = cielab(view.pixels)
     patches = superpixels(lab)
-    guess, chances = (_sober(p)[patches.labels] for p in model(zones, patches))
+    guess, chances = (p[patches.labels] for p in model(zones, patches))
     cover = _cover(chances)
     ground = plain_ground(view, zones)
-    both = growth_rules(colour_cut(lab, zones, cover, ground), zones, cover)
-    other = growth_rules(grab_cut(view, zones, cover, ground), zones, cover)
+    both, other = (
+        growth_rules(cut, zones, cover)
+        for cut in (colour_cut(lab, zones, cover, ground), grab_cut(view, zones, cover, ground))
+    )
+    if (both & other).sum() > _ALIKE * (both | other).sum():
+        both, other = other, both
     hat = _hat(both, chances, zones)
     alpha = hair_alpha(view.pixels, both & ~hat, zones.head)
     mean = (guess + chances) / np.float32(2)
     measures = hair_measures(both, other, zones, _cover(mean), mean[..., 2])
     return SegmentedHair(both & ~hat, hat, alpha, measures)
-
-
-def _sober(chances: Singles) -> Singles:
-    """Probabilities (k, 3) with fewer hats: the renders wear more of them than people do."""
-    _, hair, hat = chances.T
-    share = _HATS * hat / np.maximum(_HATS * hat + hair, 1e-9)
-    return np.stack([chances[:, 0], (hair + hat) * (1 - share), (hair + hat) * share], axis=1).astype(np.float32)
 
 
 def _cover(chances: Singles) -> Singles:
