@@ -22,7 +22,7 @@ def drive(
     size: int = _SIZE,
     fps: float = _FPS,
     take_fps: float | None = None,
-    scheme: str = "ibug68",
+    scheme: str = "auto",
 ) -> None:
     """Play a take on an avatar and write it down.
 
@@ -43,7 +43,7 @@ def drive(
     take_fps : float, optional
         Of a take that does not say it.
     scheme : str
-        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
+        What the landmarks are: see :func:`toongeo.read_landmark_file`.
 
     Raises
     ------

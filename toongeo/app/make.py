@@ -12,7 +12,7 @@ from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.avatar.save_avatar import writer_for
-from toongeo.io import read_image
+from toongeo.io import LandmarkFile, read_image
 from toongeo.model.ibug68 import INNER
 
 __all__ = ["make"]
@@ -50,7 +50,9 @@ def make(
     check_output(output, {"image": image, "landmarks": source.file, "hair_mask": hair_mask}, format)
     img = read_image(image)
     points, found = source.landmarks(image, img)
-    if found is not None:
+    if isinstance(found, LandmarkFile):
+        print(found.message)
+    else:
         trust = 100 * found.confidence[INNER].mean()
         print(f"landmarks found: face {100 * found.score:.0f} %, points {trust:.0f} % sure")
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
@@ -67,7 +69,6 @@ def make(
             hair=hair,
             hair_mask=hair_mask,
             texture_size=texture_size,
-            scheme=source.scheme,
             progress=announce,
         )
         bar.update(len(STAGES) - bar.n)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.driving import ArkitDriver, LandmarkDriver, Take
+from toongeo.io import read_landmark_frames
 from toongeo.model.expression_schemes import EXPRESSIONS
 
 __all__ = ["read_landmark_take", "read_take"]
@@ -30,11 +31,17 @@ def read_take(path: Path, fps: float | None = None) -> Take:
     return ArkitDriver().take(frames, fps or 30.0)
 
 
-def read_landmark_take(path: Path, fps: float | None = None, *, scheme: str = "ibug68") -> Take:
-    """A take from an ``.npy`` of landmarks (f, 68, 2) px, the first frame of which shows the neutral face."""
-    frames = _array(path)
-    neutral = frames[0] if frames.ndim == 3 and len(frames) else frames
-    weights = LandmarkDriver(neutral, scheme=scheme).frames(frames, fps or 30.0)
+def read_landmark_take(path: Path, fps: float | None = None, *, scheme: str = "auto") -> Take:
+    """A take from landmarks in px of each frame, the first of which shows the neutral face.
+
+    Raises
+    ------
+    OSError, ValueError
+        As of :func:`toongeo.io.read_landmark_frames`.
+    """
+    frames = read_landmark_frames(path, scheme=scheme)
+    neutral = frames[np.isfinite(frames).any(axis=(1, 2))][0]
+    weights = LandmarkDriver(neutral).frames(frames, fps or 30.0)
     return Take.of_frames(weights, fps or 30.0)
 
 

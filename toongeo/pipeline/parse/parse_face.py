@@ -44,7 +44,7 @@ def parse_face(
         The face as `fit_3dmm` found it; it is fitted to the landmarks if None.
     parser : FaceParser, optional
         Anything that is called as this function is, a network say; `ClassicalParser` if None.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
     hair_mask : array_like or path, optional
         Hair that was cut out elsewhere, which is believed: (H, W) bool or 0..255, or a picture of such.
