@@ -15,6 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from pictures import FOLDER, pictures, roles
 
 from toongeo.app.editor.editor_session import EditorSession
 from toongeo.app.editor.editor_settings import editor_settings
@@ -23,27 +24,27 @@ from toongeo.app.editor.place_landmarks import place_landmarks
 from toongeo.model import default_model
 from toongeo.model.ibug68 import OUTER_EYES
 
-PORTRAITS = Path(__file__).parents[1] / "examples" / "portraits"
 ORDER = [click["point"] for click in editor_settings()["clicks"]]
 COUNTS = (2, 3, 6, 12, 20)
 NUDGES = 10
 
 
 def main() -> None:
-    folders = [Path(name) for name in sys.argv[1:]] or [PORTRAITS]
+    folders = [Path(name) for name in sys.argv[1:]] or [FOLDER]
     print("| folder | clicks | others, % of the outer-eye distance, median (worst) | mean face by similarity |")
     print("|---|---|---|---|")
     for folder in folders:
-        pictures = PictureList(folder)
+        listed = PictureList(folder)
         everyone = [
-            points for k in range(len(pictures)) if (points := pictures.landmarks(k, pictures.picture(k))) is not None
+            points for k in range(len(listed)) if (points := listed.landmarks(k, listed.picture(k))) is not None
         ]
         for count in COUNTS:
             columns = [[left(way, points, count) for points in everyone] for way in (place_landmarks, mean_face)]
             print(
                 f"| {folder.parent.name}/{folder.name} | {count} | " + " | ".join(map(middle_and_worst, columns)) + " |"
             )
-    times = [ms for k in range(len(PictureList(PORTRAITS))) for ms in answers(k)]
+    print(roles("editor", [picture.name for picture in pictures(folders)]))
+    times = [ms for k in range(len(PictureList(FOLDER))) for ms in answers(k)]
     print(f"\nA fit with its answer as JSON: median {np.median(times):.1f} CPU ms, longest {max(times):.1f}")
 
 
@@ -72,7 +73,7 @@ def middle_and_worst(errors: list[float]) -> str:
 
 def answers(picture: int) -> list[float]:
     """CPU milliseconds of the answers while the tip of the nose goes a pixel a time."""
-    session = EditorSession(PictureList(PORTRAITS))
+    session = EditorSession(PictureList(FOLDER))
     points = session.answer("open", {"picture": picture})["points"]
     session.answer("fit", {"picture": picture, "points": points})
     times = []
