@@ -95,7 +95,7 @@ def outside(model: MorphableModel, name: str, V: np.ndarray) -> int:
 
 def row(face: AlignedFace, rig: Rig) -> list[str]:
     model = face.model
-    at_rest = intersecting(model, rig.neutral)
+    neutral = intersecting(model, rig.neutral)
     order = np.minimum(heights(model, face.vertices), 0)
     crossings, excess, teeth = [], [], outside(model, "neutral", rig.neutral)
     for name, V in shapes(rig.names, rig.neutral, rig.deltas):
@@ -103,7 +103,7 @@ def row(face: AlignedFace, rig: Rig) -> list[str]:
             beyond = (order - heights(model, V)).max()
             crossings += [f"{name} {beyond:.1f}"] if beyond > CROSSING else []
             teeth += outside(model, name, V)
-        more = intersecting(model, V) - at_rest - own()[name] - ALLOWED
+        more = intersecting(model, V) - neutral - own()[name] - ALLOWED
         excess += [f"{name} {more:.2f}"] if more > 0 else []
     gaps = " / ".join(f"{gap:.2f}" for gap in seal(model, V))
     return [gaps, ", ".join(crossings) or "-", ", ".join(excess) or "-", str(teeth)]

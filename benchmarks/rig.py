@@ -137,9 +137,9 @@ def picture_row(picture: Picture) -> None:
     face = align_face(fit_3dmm(read_image(picture.image), landmarks), landmarks)
 
     def stage() -> tuple[Rig, np.ndarray, np.ndarray]:
-        at_rest = neutral_face(face)
-        rig, _ = fit_lids(at_rest, fit_mouth(at_rest, build_rig(at_rest)))
-        shown = rig.neutral + face.vertices - at_rest.vertices
+        neutral = neutral_face(face)
+        rig, _ = fit_lids(neutral, fit_mouth(neutral, build_rig(neutral)))
+        shown = rig.neutral + face.vertices - neutral.vertices
         return rig, shown, np.asarray(fit_pose(rig, shown, face.region("skin")))
 
     stage()  # what is cached once a process

@@ -157,11 +157,11 @@ def make_avatar(
     clock.start("align")
     face = align(fit, landmarks)
     clock.start("rig")
-    at_rest, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
+    neutral_aligned, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")
-    shapes, eyes = fit_lids(at_rest, shapes)
+    shapes, eyes = fit_lids(neutral_aligned, shapes)
     # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
-    face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - at_rest.vertices))
+    face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - neutral_aligned.vertices))
     shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
     aligned = landmark_errors(face, landmarks)  # before points under hair give way to it
     head = HairyHead(face, shapes, None, faults)
@@ -206,11 +206,11 @@ def _rigged(
     """The face at rest, and its expressions with the contacts of the mouth."""
     if rig == "caricature":
         shapes = caricature_rig(face, landmarks)
-        at_rest = dataclasses.replace(face, vertices=shapes.neutral)
+        neutral_aligned = dataclasses.replace(face, vertices=shapes.neutral)
     else:
-        at_rest = neutral_face(face) if neutral else face
-        shapes = build_rig(at_rest, gain=gain)
-    return at_rest, fit_mouth(at_rest, shapes)
+        neutral_aligned = neutral_face(face) if neutral else face
+        shapes = build_rig(neutral_aligned, gain=gain)
+    return neutral_aligned, fit_mouth(neutral_aligned, shapes)
 
 
 class _Clock:

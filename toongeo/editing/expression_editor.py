@@ -165,8 +165,8 @@ def _rig_at_rest(face: AlignedFace, rig: Rig, pose: np.ndarray) -> Rig:
     """Blendshapes of the face without its known expression: those built on a smile would be another's at rest."""
     if np.array_equal(pose, rig.pose):
         return rig
-    at_rest = dataclasses.replace(face, vertices=face.vertices - np.tensordot(pose, rig.deltas, 1))
-    rig, _ = fit_lids(at_rest, fit_mouth(at_rest, build_rig(at_rest)))
+    neutral_aligned = dataclasses.replace(face, vertices=face.vertices - np.tensordot(pose, rig.deltas, 1))
+    rig, _ = fit_lids(neutral_aligned, fit_mouth(neutral_aligned, build_rig(neutral_aligned)))
     return rig
 
 

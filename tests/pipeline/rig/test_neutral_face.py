@@ -77,12 +77,12 @@ def test_removal_knows_no_jump(face, weight):
 
 def test_parted_lips_meet_even_if_the_fit_knows_no_expression(face, model):
     """What the alignment has opened: the lower lip drawn down, as drawings open mouths."""
-    at_rest = posed(face, {})
-    V = at_rest.vertices.copy()
+    neutral = posed(face, {})
+    V = neutral.vertices.copy()
     lip = V[model.landmarks[66]]
     below = np.exp(-(np.linalg.norm(V - lip, axis=1) ** 2) / 300)
     V[:, 1] -= 20 * below * (model.region("lip_lower") | model.region("jaw"))
-    parted = dataclasses.replace(at_rest, vertices=V)
+    parted = dataclasses.replace(neutral, vertices=V)
     assert lip_gap(model, parted.vertices)[1] > 10
     assert lip_gap(model, neutral_face(parted).vertices)[1] < 0.25 * lip_gap(model, parted.vertices)[1]
 

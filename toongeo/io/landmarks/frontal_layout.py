@@ -8,16 +8,16 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["FrontalLayout", "frontal_layout", "frontal_pose"]
+from toongeo.arrays import Floats
 
-_Floats = NDArray[np.float64]
+__all__ = ["FrontalLayout", "frontal_layout", "frontal_pose"]
 
 
 @dataclass(frozen=True, eq=False)
 class FrontalLayout:
     """A frontal face: ``points`` (68, 2), x right, y down; ``mirror`` (68,), partners on the other side; ``parts``."""
 
-    points: _Floats
+    points: Floats
     mirror: NDArray[np.int64]
     parts: tuple[str, ...]
 
@@ -34,7 +34,7 @@ def frontal_layout() -> FrontalLayout:
     )
 
 
-def frontal_pose(points: _Floats, layout: _Floats) -> tuple[_Floats, float, float]:
+def frontal_pose(points: Floats, layout: Floats) -> tuple[Floats, float, float]:
     """Best orthogonal map layout -> points (2, 2), either handedness; misfits of the best rotation and reflection.
 
     Orthogonal Procrustes: for unit-norm centred shapes the best rotation explains the share (s1 +- s2)^2 of

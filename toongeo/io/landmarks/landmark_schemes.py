@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._data_path import data_path
+from toongeo.arrays import Floats
 from toongeo.io.landmark_array import landmark_array
 from toongeo.io.landmarks.frontal_layout import frontal_layout, frontal_pose
 from toongeo.io.point_array import point_array
 
 __all__ = ["SCHEMES", "ibug_points", "scheme_of"]
 
-_Floats = NDArray[np.float64]
 
 SCHEMES: Mapping[str, tuple[int, ...]] = MappingProxyType(
     {
@@ -41,7 +41,7 @@ _JAW = 17
 _INNER_MOUTH_CORNERS = (60, 64)
 
 
-def scheme_of(points: _Floats, name: str = "landmarks") -> str:
+def scheme_of(points: Floats, name: str = "landmarks") -> str:
     """Which scheme points (k, 2) px have, by their number; of several with the same number the one that forms a face.
 
     Raises
@@ -55,7 +55,7 @@ def scheme_of(points: _Floats, name: str = "landmarks") -> str:
     return found[0] if len(found) == 1 else min(found, key=lambda scheme: _misfit(points, scheme))
 
 
-def ibug_points(points: ArrayLike, scheme: str, name: str = "landmarks") -> _Floats:
+def ibug_points(points: ArrayLike, scheme: str, name: str = "landmarks") -> Floats:
     """The 68 points (68, 2) px out of those of a scheme; what it does not have is NaN.
 
     Raises
@@ -82,7 +82,7 @@ def ibug_points(points: ArrayLike, scheme: str, name: str = "landmarks") -> _Flo
     return landmark_array(_taken(array, scheme), name)
 
 
-def _taken(points: _Floats, scheme: str) -> _Floats:
+def _taken(points: Floats, scheme: str) -> Floats:
     first, second, share = _table(scheme)
     placed = np.where(first[:, None] >= 0, points[first], np.nan)
     between = np.flatnonzero(share)
@@ -94,7 +94,7 @@ def _taken(points: _Floats, scheme: str) -> _Floats:
 
 
 @cache
-def _table(scheme: str) -> tuple[NDArray[np.int64], NDArray[np.int64], _Floats]:
+def _table(scheme: str) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats]:
     """Of each landmark: the scheme's point a, its point b, and t in a + t (b - a); a = -1 where it has none."""
     order = np.arange(68)
     if scheme in ("ibug51", "ibug49"):
@@ -117,7 +117,7 @@ def _rows(table: str) -> list[dict[str, str]]:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
-def _misfit(points: _Floats, scheme: str) -> float:
+def _misfit(points: Floats, scheme: str) -> float:
     taken = _taken(points, scheme)
     usable = np.isfinite(taken).all(axis=1)
     if not usable.any() or not np.ptp(taken[usable], axis=0).any():

@@ -1,13 +1,12 @@
 """Points of a part in another order than iBUG's: sides or edges exchanged, a row that runs backwards."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.io.landmarks.frontal_layout import frontal_layout
 
 __all__ = ["order_doubts"]
 
-_Floats = NDArray[np.float64]
 
 # First and last point of each row, its part in the layout, its name.
 _ROWS = (
@@ -33,7 +32,7 @@ _BACKWARDS = -0.3
 _CROSSED = -0.08
 
 
-def order_doubts(points: _Floats, pose: _Floats) -> list[str]:
+def order_doubts(points: Floats, pose: Floats) -> list[str]:
     """Sentences about parts (68, 2) that look right only in another order.
 
     Parameters
@@ -61,14 +60,14 @@ def order_doubts(points: _Floats, pose: _Floats) -> list[str]:
     return doubts
 
 
-def _runs_backwards(upright: _Floats, first: int, last: int) -> bool:
+def _runs_backwards(upright: Floats, first: int, last: int) -> bool:
     steps, expected = (np.diff(shape[first : last + 1], axis=0) for shape in (upright, frontal_layout().points))
     along = np.einsum("ij,ij->i", steps, expected)
     possible = np.linalg.norm(steps, axis=1) * np.linalg.norm(expected, axis=1)
     return bool(np.nansum(along) < _BACKWARDS * np.nansum(possible))
 
 
-def _exchanged_parts(upright: _Floats) -> list[str]:
+def _exchanged_parts(upright: Floats) -> list[str]:
     layout = frontal_layout()
     # Towards the subject's left: negative in a part whose sides are exchanged.
     sideways = np.sign(layout.points[:, 0]) * (upright - upright[layout.mirror])[:, 0]

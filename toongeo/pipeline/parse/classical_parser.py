@@ -104,10 +104,10 @@ def _in_view(view: WorkingView, mask: Mask) -> Mask:
 def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin, hair: Mask) -> NDArray[np.uint8]:
     """Labels (h, w) of the working view; later ones cover earlier ones."""
     labels = np.full(view.pixels.shape[:2], FaceLabel.BACKGROUND, np.uint8)
-    strange = cut.head & ~cut.skin
+    non_skin = cut.head & ~cut.skin
     neck = (zones.below_chin | (zones.neck & zones.lower_face)) & ~zones.hull
     ears = grown(zones.ears, _EARS * view.head) & ~zones.hull & ~neck
-    labels[strange & zones.hull] = FaceLabel.OTHER
+    labels[non_skin & zones.hull] = FaceLabel.OTHER
     labels[cut.skin] = FaceLabel.SKIN
     labels[cut.skin & neck] = FaceLabel.NECK
     labels[cut.skin & ears] = FaceLabel.EARS
@@ -118,7 +118,7 @@ def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin, hair: Mask) -
     beside = grown(labels != FaceLabel.BACKGROUND, _LINES * view.head)  # not the lines of clothes
     labels[cut.outline & cut.head & beside & ~strands] = FaceLabel.OTHER
     for brow, label in ((zones.brow_right, FaceLabel.BROW_RIGHT), (zones.brow_left, FaceLabel.BROW_LEFT)):
-        labels[brow & (cut.alien > 0.5)] = label
+        labels[brow & (cut.non_skin > 0.5)] = label
     labels[zones.upper_lip] = FaceLabel.UPPER_LIP
     labels[zones.lower_lip] = FaceLabel.LOWER_LIP
     labels[zones.inner_mouth] = FaceLabel.INNER_MOUTH

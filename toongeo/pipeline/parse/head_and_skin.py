@@ -50,14 +50,14 @@ class HeadAndSkin:
     ----------
     head : what belongs to the head: skin, hair, neck, what is worn
     skin : skin, without outlines
-    alien : how unlike skin a colour is, (h, w) in [0, 1]
+    non_skin : how unlike skin a colour is, (h, w) in [0, 1]
     outline : dark strokes
     confidence : low where the border of head or skin is doubtful
     """
 
     head: Mask
     skin: Mask
-    alien: NDArray[np.float32]
+    non_skin: NDArray[np.float32]
     outline: Mask
     confidence: NDArray[np.float32]
 
@@ -68,7 +68,7 @@ def head_and_skin(view: WorkingView, zones: FaceZones) -> HeadAndSkin:
     outline = _outline(lab[..., 0], _STROKE * view.head)
     core = grown(zones.hull, -_CORE * view.head)
     features = zones.eyes | zones.brow_left | zones.brow_right | zones.inner_mouth | zones.upper_lip | zones.lower_lip
-    alien = _alien(lab, core & ~features & ~outline, zones)
+    non_skin = _non_skin(lab, core & ~features & ~outline, zones)
     colours = np.asarray(cv2.cvtColor(view.pixels, cv2.COLOR_RGB2LAB), np.uint8)
     body = zones.silhouette | zones.neck
     behind = _behind(view, body)
@@ -82,14 +82,14 @@ def head_and_skin(view: WorkingView, zones: FaceZones) -> HeadAndSkin:
     near = grown(body, _SKIN * view.head)
     skin = cut_out(
         colours,
-        sure=core & ~features & (alien < 0.5) & ~outline,
-        likely=near & (alien < 0.6) & ~outline & ~features,
+        sure=core & ~features & (non_skin < 0.5) & ~outline,
+        likely=near & (non_skin < 0.6) & ~outline & ~features,
         never=~near | outline | ~(head | core),
     )
     head = _one_piece(head | skin, core)
-    skin = skin & ~features | (features & (alien < 0.5) & ~outline)
+    skin = skin & ~features | (features & (non_skin < 0.5) & ~outline)
     confidence = np.minimum(_trust(view, head), _trust(view, skin))
-    return HeadAndSkin(head, skin, alien, outline, confidence)
+    return HeadAndSkin(head, skin, non_skin, outline, confidence)
 
 
 def _behind(view: WorkingView, body: Mask) -> Mask:
@@ -138,7 +138,7 @@ def _outline(lightness: NDArray[np.float32], breadth: float) -> Mask:
     return (valley > _VALLEY) & (lightness < _DARK)
 
 
-def _alien(lab: NDArray[np.float32], inside: Mask, zones: FaceZones) -> NDArray[np.float32]:
+def _non_skin(lab: NDArray[np.float32], inside: Mask, zones: FaceZones) -> NDArray[np.float32]:
     """How unlike skin each colour is; a quadratic surface follows its shading over the face."""
     samples = lab[inside] if inside.sum() > 16 else lab.reshape(-1, 3)
     seed = colour_mode(samples.astype(np.float64))

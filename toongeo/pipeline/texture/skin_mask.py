@@ -43,12 +43,12 @@ def skin_mask(
     """Skin and sure skin (h, w) bool of the crop, found at a reduced size, with eroded silhouettes."""
     scale = min(1.0, _SKIN_SIDE / max(crop.shape[:2]))
     if parts is None:
-        strange = _strange(crop, landmarks)
-        allowed = (~strange).astype(np.uint8)
+        non_skin = _non_skin(crop, landmarks)
+        allowed = (~non_skin).astype(np.uint8)
         # One colour for all that surrounds the face: which one it was must not show.
         core = _core(_inwards(landmarks), crop.shape) > 0
         dark = bool(core.any()) and np.median(crop[core]) > 127
-        crop = np.where(strange[..., None], np.uint8(0 if dark else 255), crop)
+        crop = np.where(non_skin[..., None], np.uint8(0 if dark else 255), crop)
     else:
         # Beards, glasses and drawn lines are part of the face.
         drawn = (parts != FaceLabel.BACKGROUND) & (amid(landmarks, front.shape) > 0)
@@ -81,10 +81,10 @@ def amid(landmarks: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
     return amid
 
 
-def _strange(crop: np.ndarray, landmarks: np.ndarray) -> np.ndarray:
+def _non_skin(crop: np.ndarray, landmarks: np.ndarray) -> np.ndarray:
     """Pixels (h, w) bool about the core of the face that have none of the colours within it: background and hair.
 
-    Within the hull of the landmarks only those that reach its outside are strange; others are drawn on the face.
+    Within the hull of the landmarks only those that reach its outside count; others are drawn on the face.
     """
     core = _core(_inwards(landmarks), crop.shape) > 0
     if not core.any():

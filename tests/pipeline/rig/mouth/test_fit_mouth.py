@@ -83,12 +83,12 @@ def test_sealed_lips_are_as_far_apart_as_told_where_they_are_paired(stages):
 def test_no_lip_is_beyond_the_other_where_it_was_not_in_the_aligned_face(stages):
     face, _, rig = stages
     up = _up(lip_line(face.model), rig.neutral)
-    at_rest = heights(face.model, face.vertices, up)
+    neutral = heights(face.model, face.vertices, up)
     for name, delta in zip(rig.names, rig.deltas, strict=True):
         if name == "mouthClose":  # a corrective of jawOpen
             continue
         V = rig.neutral + delta
-        for rest, height in zip(at_rest, heights(face.model, V, up), strict=True):
+        for rest, height in zip(neutral, heights(face.model, V, up), strict=True):
             assert (np.minimum(rest, 0) - height).max() < 0.003 * width(face.model, V), name
 
 
@@ -118,11 +118,11 @@ def test_lips_that_cross_in_the_neutral_face_are_parted(closed_mouth):
 
 def test_expressions_of_the_mouth_intersect_little_more_than_on_the_template(stages):
     face, _, rig = stages
-    model, at_rest = face.model, intersecting(face.model, rig.neutral)
+    model, neutral = face.model, intersecting(face.model, rig.neutral)
     for k, name in enumerate(rig.names):
         if name in ("mouthRollLower", "mouthRollUpper", "mouthFunnel", "mouthPucker", "jawRight"):
             # 0 on the template
-            assert intersecting(model, rig.neutral + rig.deltas[k]) <= at_rest + 0.16, name
+            assert intersecting(model, rig.neutral + rig.deltas[k]) <= neutral + 0.16, name
 
 
 def test_nothing_comes_out_of_the_mouth_but_the_tongue(stages):

@@ -6,12 +6,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Floats
 from toongeo.io.landmarks.frontal_layout import frontal_layout, frontal_pose
 from toongeo.io.landmarks.landmark_schemes import SCHEMES, ibug_points, scheme_of
 
 __all__ = ["PictureSize", "PlacedLandmarks", "placed_landmarks"]
 
-_Floats = NDArray[np.float64]
+
 PictureSize = tuple[int, int] | NDArray[np.uint8]
 
 # Shares of a picture lie in 0..1, and a little beyond for faces at its edge; a face in pixels is larger.
@@ -24,13 +25,13 @@ _HANDEDNESS_MARGIN = 0.1
 class PlacedLandmarks:
     """The 68 points (68, 2) px, the scheme they came from, and what was guessed, for people."""
 
-    points: _Floats
+    points: Floats
     scheme: str
     notes: str
 
 
 def placed_landmarks(
-    points: _Floats, path: Path, *, scheme: str, size: PictureSize | None, axes_doubtful: bool
+    points: Floats, path: Path, *, scheme: str, size: PictureSize | None, axes_doubtful: bool
 ) -> PlacedLandmarks:
     """The 68 landmarks out of one face of a file: see `read_landmark_file` for the arguments.
 
@@ -49,7 +50,7 @@ def placed_landmarks(
     return PlacedLandmarks(landmarks, used, notes)
 
 
-def _pixels(points: _Floats, size: PictureSize | None, path: Path) -> tuple[_Floats, str]:
+def _pixels(points: Floats, size: PictureSize | None, path: Path) -> tuple[Floats, str]:
     """Points in pixels, and a note if they were shares of the picture."""
     finite = points[np.isfinite(points).all(axis=1)]
     if not len(finite) or np.abs(finite).max() > _LARGEST_SHARE:
@@ -74,7 +75,7 @@ def _width_and_height(size: PictureSize) -> tuple[int, int]:
     return width, height
 
 
-def _columns_exchanged(points: _Floats) -> bool:
+def _columns_exchanged(points: Floats) -> bool:
     usable = np.isfinite(points[:, 0])
     if not np.ptp(points[usable], axis=0).any():
         return False

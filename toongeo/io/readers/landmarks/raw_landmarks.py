@@ -4,11 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats
 
 __all__ = ["RawLandmarks", "face_points"]
-
-_Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +26,11 @@ class RawLandmarks:
     """
 
     format: str
-    frames: tuple[tuple[_Floats, ...], ...]
+    frames: tuple[tuple[Floats, ...], ...]
     axes_doubtful: bool = False
 
 
-def face_points(rows: Iterable[Iterable[float]] | _Floats, shift: int = 0) -> _Floats:
+def face_points(rows: Iterable[Iterable[float]] | Floats, shift: int = 0) -> Floats:
     """Points (k, 2) less ``shift`` out of rows of x, y and perhaps a depth or a score.
 
     A row of three zeros is a point that was not found: so COCO and OpenPose have it.

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.arrays import Integers
+from toongeo.arrays import Integers, Reals
 from toongeo.pipeline.hair.colours.panels import Texels, panels, texels
 from toongeo.pipeline.hair.colours.picture_colours import PictureColours
 from toongeo.pipeline.hair.colours.strand_frame import StrandFrame
@@ -14,7 +14,7 @@ from toongeo.render import sample_image
 
 __all__ = ["hair_texture"]
 
-Floats = NDArray[np.floating]
+
 _UNSEEN = 1.25  # texels per mm where the picture shows nothing
 _BEHIND = (-0.2, 0.5)  # cosines away from the viewer between which lights of the picture fade
 _TURNED = (0.3, 0.6)  # cosines to the viewer between which the picture takes over from strands
@@ -22,7 +22,7 @@ _TURNED = (0.3, 0.6)  # cosines to the viewer between which the picture takes ov
 
 def hair_texture(
     plane: WorkingPlane, mesh: ShellMesh, colours: PictureColours, frame: StrandFrame, strands: NDArray[np.float32]
-) -> tuple[NDArray[np.uint8], Floats, Integers]:
+) -> tuple[NDArray[np.uint8], Reals, Integers]:
     """Atlas (H, W, 3) uint8, coordinates (t, 2) and corners (m, 3) into them.
 
     ``strands`` (along, across, 3) is what strands add to the colours, on the whole breadth of the frame's map.
@@ -71,7 +71,7 @@ def _colours(
     return np.asarray(share * drawn + (1 - share) * (broad + behind * (plain - broad) + detail), np.float32)
 
 
-def _ramp(values: Floats, low: float, high: float) -> NDArray[np.float32]:
+def _ramp(values: Reals, low: float, high: float) -> NDArray[np.float32]:
     """0 (k, 1) below, 1 above, smooth in between."""
     t = np.clip((values - low) / (high - low), 0, 1)
     return np.asarray(t * t * (3 - 2 * t), np.float32)[:, None]

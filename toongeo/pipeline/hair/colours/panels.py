@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from toongeo.arrays import Integers
+from toongeo.arrays import Integers, Reals
 from toongeo.geometry import vertex_normals
 from toongeo.pipeline.hair.shell.shell_mesh import ShellMesh
 from toongeo.render import interpolate, rasterize
 
 __all__ = ["Panel", "Texels", "panels", "texels"]
 
-Floats = NDArray[np.floating]
 
 # Directions in the plane's frame: to the right of the view, up in it, and towards its viewer.
 _VIEWS = np.array(
@@ -47,12 +45,12 @@ class Panel:
     """
 
     rows: Integers
-    view: Floats
-    low: Floats
+    view: Reals
+    low: Reals
     density: float
     shape: tuple[int, int]
 
-    def places(self, X: Floats) -> Floats:
+    def places(self, X: Reals) -> Reals:
         """Column and row from below (n, 2), texels, of points (n, 3) in the plane's frame."""
         return np.asarray(((X @ self.view.T)[:, :2] - self.low) * self.density)
 
@@ -63,8 +61,8 @@ class Texels:
 
     number: Integers
     triangle: Integers
-    points: Floats
-    normals: Floats
+    points: Reals
+    normals: Reals
 
 
 def panels(mesh: ShellMesh, front_density: float, density: float) -> list[Panel]:

@@ -6,14 +6,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.arrays import Mask
+from toongeo.arrays import Mask, Reals
 from toongeo.pipeline.hair.plane.masks import nearest_set
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 
 __all__ = ["PictureColours", "picture_colours"]
 
-Floats = NDArray[np.floating]
 
 _EDGE_MM = 0.8  # along the hair's edge the picture is mixed with what is beside it
 _RARE = 0.0015  # of the hair: colours that are rarer are of something else
@@ -52,7 +51,7 @@ class PictureColours:
 
 
 def picture_colours(
-    plane: WorkingPlane, img: NDArray[np.uint8], inside: Floats, outer: Floats, density: float
+    plane: WorkingPlane, img: NDArray[np.uint8], inside: Reals, outer: Reals, density: float
 ) -> PictureColours:
     """Colours of the hair at so many cells per mm.
 
@@ -89,7 +88,7 @@ def picture_colours(
     return PictureColours(drawn.astype(np.float32), broad, plain, known, deep, cell)
 
 
-def _resampled(layer: Floats, shape: tuple[int, int], cell: float) -> NDArray[np.float32]:
+def _resampled(layer: Reals, shape: tuple[int, int], cell: float) -> NDArray[np.float32]:
     scale = cell / CELL_MM
     affine = np.array([[scale, 0, 0], [0, scale, 0]])
     flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
@@ -98,7 +97,7 @@ def _resampled(layer: Floats, shape: tuple[int, int], cell: float) -> NDArray[np
     )
 
 
-def _outline_mm(picture: NDArray[np.uint8], deep: Floats, edge: Floats) -> float:
+def _outline_mm(picture: NDArray[np.uint8], deep: Reals, edge: Reals) -> float:
     """Breadth of a drawn outline, mm; it is darker than what it bounds."""
     light = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
     inner = (deep > 8) & (deep < 25)

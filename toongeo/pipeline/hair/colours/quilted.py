@@ -3,9 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Reals
+
 __all__ = ["quilted"]
 
-Floats = NDArray[np.floating]
+
 # A patch is taken whose error is above the best one's by at most so much of that, and of the mean one: with less, the
 # plainest patch beside itself always fits best.
 _TOLERANCE, _SPREAD = 0.2, 0.07
@@ -71,7 +73,7 @@ def _distances(
     return np.asarray(np.maximum(squares - 2 * (rows @ goal) + goal @ goal, 0), np.float32)
 
 
-def _cut(difference: Floats) -> NDArray[np.int64]:
+def _cut(difference: Reals) -> NDArray[np.int64]:
     """Column in each row of the path from the first row to the last along which the sum is least."""
     rows, columns = difference.shape
     total = np.full((rows, columns + 2), np.inf)

@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Reals
 
 __all__ = ["StrandFrame"]
 
-Floats = NDArray[np.floating]
+
 _WHORL = np.deg2rad(20.0)  # by which the highest point of the hair's flow lies behind the top of the head
 
 
@@ -24,7 +25,7 @@ class StrandFrame:
     radius : float, mm
     """
 
-    centre: Floats
+    centre: Reals
     radius: float
 
     @property
@@ -32,7 +33,7 @@ class StrandFrame:
         """mm across the map."""
         return 2 * np.pi * self.radius
 
-    def at(self, points: Floats) -> tuple[Floats, Floats]:
+    def at(self, points: Reals) -> tuple[Reals, Reals]:
         """Place across the map and way down from the crown (n,), mm, of points (n, 3) in the model frame."""
         c, s = np.cos(_WHORL), np.sin(_WHORL)
         x, y, z = (points - self.centre).T

@@ -5,11 +5,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
+from toongeo.arrays import Reals
 from toongeo.pipeline.hair.colours.picture_colours import PictureColours
 
 __all__ = ["strand_patches"]
 
-Floats = NDArray[np.floating]
+
 _MOST = 60  # patches: more look no more varied
 _SIDE_MM = (10.0, 36.0)  # of a patch: a lock of hair, as far as the hair is broad enough
 _FLOW_MM = 8.0  # over which the direction of strands is smoothed
@@ -40,7 +41,7 @@ def strand_patches(colours: PictureColours, per_mm: float, rng: np.random.Genera
     return patches[contrast <= _OUTSTANDING * np.median(contrast)]
 
 
-def _strand_directions(colours: PictureColours) -> Floats:
+def _strand_directions(colours: PictureColours) -> Reals:
     """Unit vectors (h, w, 2), row and column, along the strands; down the picture, where they say nothing else.
 
     Across strands the colour changes most: the structure tensor (Foerstner and Guelch 1987).

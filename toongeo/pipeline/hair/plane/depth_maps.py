@@ -4,16 +4,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import grey_dilation
 
+from toongeo.arrays import Reals
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 from toongeo.render import interpolate, rasterize
 
 __all__ = ["ball_offset", "depth_maps", "silhouette"]
 
-Floats = NDArray[np.floating]
+
 _NOWHERE = -1e6
 
 
-def depth_maps(plane: WorkingPlane, X: Floats, F: NDArray[np.integer]) -> tuple[Floats, Floats]:
+def depth_maps(plane: WorkingPlane, X: Reals, F: NDArray[np.integer]) -> tuple[Reals, Reals]:
     """Greatest and least z (rows, columns) of a mesh in the plane's frame; -inf and +inf where there is none."""
     cells = np.column_stack([plane.cells(X[:, :2]), X[:, 2]])
     front = rasterize(cells, F, *plane.shape)
@@ -24,12 +25,12 @@ def depth_maps(plane: WorkingPlane, X: Floats, F: NDArray[np.integer]) -> tuple[
     )
 
 
-def silhouette(plane: WorkingPlane, X: Floats, F: NDArray[np.integer]) -> NDArray[np.bool_]:
+def silhouette(plane: WorkingPlane, X: Reals, F: NDArray[np.integer]) -> NDArray[np.bool_]:
     """Cells that triangles cover, of a mesh in the plane's frame."""
     return rasterize(plane.cells(X[:, :2]), F, *plane.shape).mask
 
 
-def ball_offset(front: Floats, radius_mm: float) -> Floats:
+def ball_offset(front: Reals, radius_mm: float) -> Reals:
     """Upper envelope of balls about every point of a depth map whose empty cells are -inf."""
     reach = int(np.ceil(radius_mm / CELL_MM))
     y, x = np.mgrid[-reach : reach + 1, -reach : reach + 1] * CELL_MM

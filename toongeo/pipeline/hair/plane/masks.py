@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.arrays import Mask
+from toongeo.arrays import Mask, Reals
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM
 
 __all__ = [
@@ -21,16 +21,14 @@ __all__ = [
     "without_holes",
 ]
 
-Floats = NDArray[np.floating]
 
-
-def depth_inside(mask: Mask) -> Floats:
+def depth_inside(mask: Mask) -> Reals:
     """mm (rows, columns) from each set cell to the nearest that is not; 0 at those."""
     away = cv2.distanceTransform(np.ascontiguousarray(mask, np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
     return np.asarray(away, np.float64) * CELL_MM
 
 
-def signed(mask: Mask) -> Floats:
+def signed(mask: Mask) -> Reals:
     """Signed distance, mm, to the outline of a mask; > 0 inside."""
     return depth_inside(mask) - depth_inside(~mask)
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
+from toongeo.arrays import Reals
 from toongeo.pipeline.align.align_face import AlignedFace
 
 __all__ = ["CELL_MM", "WorkingPlane", "working_plane"]
@@ -15,8 +16,6 @@ __all__ = ["CELL_MM", "WorkingPlane", "working_plane"]
 CELL_MM = 1.25  # side of a cell: a third of the thinnest strand that is kept
 _PAD_MM = 25.0  # of empty cells about head and hair: more than any ball that rolls over them
 _MOST_PIXELS = 20_000  # of the mask, whose extent is asked
-
-Floats = NDArray[np.floating]
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,38 +36,38 @@ class WorkingPlane:
     shape : (rows, columns)
     """
 
-    rotation: Floats
-    unroll: Floats
+    rotation: Reals
+    unroll: Reals
     scale: float
-    translation: Floats
-    low: Floats
+    translation: Reals
+    low: Reals
     shape: tuple[int, int]
 
-    def of(self, points: Floats) -> Floats:
+    def of(self, points: Reals) -> Reals:
         """Plane coordinates (n, 3) of model-frame points (n, 3)."""
         return np.asarray(points @ self.rotation.T)
 
-    def back(self, points: Floats) -> Floats:
+    def back(self, points: Reals) -> Reals:
         """Model-frame points (n, 3); inverse of :meth:`of`."""
         return np.asarray(points @ self.rotation)
 
-    def px(self, xy: Floats) -> Floats:
+    def px(self, xy: Reals) -> Reals:
         """Pixels (n, 2) of plane points (n, 2)."""
         return np.asarray(self.scale * (xy @ self.unroll.T) * [1, -1] + self.translation)
 
-    def xy(self, px: Floats) -> Floats:
+    def xy(self, px: Reals) -> Reals:
         """Plane points (n, 2) of pixels (n, 2); inverse of :meth:`px`."""
         return np.asarray(((px - self.translation) / self.scale * [1, -1]) @ self.unroll)
 
-    def cells(self, xy: Floats) -> Floats:
+    def cells(self, xy: Reals) -> Reals:
         """Column and row (n, 2) of plane points (n, 2)."""
         return (xy - self.low) / CELL_MM
 
-    def points(self, cells: Floats) -> Floats:
+    def points(self, cells: Reals) -> Reals:
         """Plane points (n, 2) of columns and rows (n, 2)."""
         return np.asarray(cells) * CELL_MM + self.low
 
-    def sample(self, raster: NDArray[Any], xy: Floats) -> Floats:
+    def sample(self, raster: NDArray[Any], xy: Reals) -> Reals:
         """Values (n,) of a raster at plane points (n, 2), linear in between."""
         columns, rows = self.cells(xy).T
         return np.asarray(map_coordinates(raster.astype(np.float64), [rows, columns], order=1, mode="nearest"))

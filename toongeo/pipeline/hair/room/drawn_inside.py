@@ -5,6 +5,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from toongeo.arrays import Reals
 from toongeo.geometry import adjacency
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.masks import signed
@@ -12,14 +13,14 @@ from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 
 __all__ = ["drawn_inside"]
 
-Floats = NDArray[np.floating]
+
 _INSIDE_MM = 3.5  # between the outline and what is drawn inside: the thinnest hair
 _ROUNDS, _PASSES = 4, 6  # pushes, and passes that spread each over the neighbours
 
 
 def drawn_inside(
-    face: AlignedFace, plane: WorkingPlane, X: Floats, outline: NDArray[np.bool_], moving: NDArray[np.bool_]
-) -> Floats:
+    face: AlignedFace, plane: WorkingPlane, X: Reals, outline: NDArray[np.bool_], moving: NDArray[np.bool_]
+) -> Reals:
     """Displacement (n, 3) in the plane, across the view, that brings moving vertices 3.5 mm inside cells of an outline.
 
     X is (n, 3) in the plane's frame. Their neighbours that are no part of the face follow smoothly.

@@ -3,17 +3,18 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.arrays import Reals
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
 
 __all__ = ["lowered_crown"]
 
-Floats = NDArray[np.floating]
+
 _UNDER_MM = 4.0  # from the top of the hair to the skull
 _LOWEST = 0.55  # of the height above the brows is left at least: drawings have low heads, not none
 
 
-def lowered_crown(face: AlignedFace, plane: WorkingPlane, hair: NDArray[np.bool_], crown: NDArray[np.bool_]) -> Floats:
+def lowered_crown(face: AlignedFace, plane: WorkingPlane, hair: NDArray[np.bool_], crown: NDArray[np.bool_]) -> Reals:
     """Displacement (n, 3), mm, in the plane's frame, that brings the crown below the top of the hair.
 
     It grows with the square of the height above the brows, which keep their place; the skull becomes shallower, too.

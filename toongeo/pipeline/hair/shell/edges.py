@@ -3,11 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.arrays import Integers
+from toongeo.arrays import Integers, Reals
 
 __all__ = ["boundary_edges", "edges_of", "halved"]
-
-Floats = NDArray[np.floating]
 
 
 def edges_of(T: Integers) -> tuple[Integers, Integers, Integers]:
@@ -25,7 +23,7 @@ def boundary_edges(T: Integers) -> Integers:
     return edges[count == 1]
 
 
-def halved(P: Floats, T: Integers, split: NDArray[np.bool_]) -> tuple[Floats, Integers]:
+def halved(P: Reals, T: Integers, split: NDArray[np.bool_]) -> tuple[Reals, Integers]:
     """Points and triangles with a new point in the middle of some edges (of ``edges_of``)."""
     edges, number, _ = edges_of(T)
     middle = np.where(split, len(P) + np.cumsum(split) - 1, -1)

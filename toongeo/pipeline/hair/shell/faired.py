@@ -4,16 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
-from toongeo.arrays import Integers, Mask
+from toongeo.arrays import Integers, Mask, Reals
 from toongeo.pipeline.hair.shell.edges import boundary_edges, edges_of
 from toongeo.pipeline.hair.shell.sheet_rasters import SheetRasters
 from toongeo.pipeline.hair.shell.sheets import Sheets
 
 __all__ = ["faired"]
 
-Floats = NDArray[np.floating]
 
 _ROUNDS, _SHRINK, _SWELL = 20, 0.5, -0.51  # of Taubin 1995: a round keeps what is broad as large as it was
 _FLOOR_MM2 = 1.0  # added to squared lengths of edges, so that none counts for all
@@ -61,7 +59,7 @@ def _inner(T: Integers, shown: Mask, without: Mask) -> Mask:
     return _touched(T[shown], n) & ~_touched(T[~shown], n) & ~without
 
 
-def _means(X: Floats, faces: Integers, rows: Integers) -> tuple[sp.csr_array, Integers]:
+def _means(X: Reals, faces: Integers, rows: Integers) -> tuple[sp.csr_array, Integers]:
     """Matrix that takes each of these rows to the mean of its neighbours, the nearer the more."""
     a, b = edges_of(faces)[0].T
     weight = 1 / (((X[a] - X[b]) ** 2).sum(1) + _FLOOR_MM2)
@@ -69,13 +67,13 @@ def _means(X: Floats, faces: Integers, rows: Integers) -> tuple[sp.csr_array, In
     return sp.diags_array(1 / np.asarray(W.sum(1)).ravel()) @ W, rows
 
 
-def _areas(P: Floats, T: Integers) -> Floats:
+def _areas(P: Reals, T: Integers) -> Reals:
     """Twice the areas in the plane."""
     u, v = P[T[:, 1]] - P[T[:, 0]], P[T[:, 2]] - P[T[:, 0]]
     return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
 
 
-def _clear(both: Sheets, P: Floats, front: Floats, back: Floats, rasters: SheetRasters) -> Sheets:
+def _clear(both: Sheets, P: Reals, front: Reals, back: Reals, rasters: SheetRasters) -> Sheets:
     """The sheets at new places, clear of the head, and as far apart as they were where one only lines the other."""
     gap = both.front - both.back
     maps = rasters.at(P)

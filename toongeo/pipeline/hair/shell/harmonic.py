@@ -5,14 +5,13 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
+from toongeo.arrays import Reals
 from toongeo.geometry import cotangent_laplacian
 
 __all__ = ["smooth_max", "solved"]
 
-Floats = NDArray[np.floating]
 
-
-def solved(P: Floats, T: NDArray[np.int64], known: NDArray[np.bool_], values: Floats, source: Floats) -> Floats:
+def solved(P: Reals, T: NDArray[np.int64], known: NDArray[np.bool_], values: Reals, source: Reals) -> Reals:
     """Functions f (n, k) with -laplacian f = source (k,) where not known; boundaries that are not known are free.
 
     Vertices without triangles keep their values.
@@ -34,6 +33,6 @@ def solved(P: Floats, T: NDArray[np.int64], known: NDArray[np.bool_], values: Fl
     return f
 
 
-def smooth_max(a: Floats, b: Floats, width: Floats) -> Floats:
+def smooth_max(a: Reals, b: Reals, width: Reals) -> Reals:
     """The larger of two functions, rounded where they are less than a width apart; a little above both there."""
     return np.asarray((a + b + np.sqrt((a - b) ** 2 + width**2)) / 2)

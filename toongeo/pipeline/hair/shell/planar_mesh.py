@@ -5,17 +5,15 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import Delaunay, cKDTree
 from skimage.measure import find_contours, points_in_poly
 
-from toongeo.arrays import Integers, Mask
+from toongeo.arrays import Integers, Mask, Reals
 from toongeo.pipeline.hair.plane.masks import signed
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 
 __all__ = ["planar_mesh"]
 
-Floats = NDArray[np.floating]
 
 STEP_MM, GRID_MM = 2.8, 7.5  # spacing along outlines, and between the points inside
 RINGS_MM = (1.5, 4.5)  # inside outlines: rows of points, without which a shell that turns there is a washboard
@@ -32,11 +30,11 @@ _LARGE_MM2 = 1.0e5  # regions beyond this get larger triangles inside
 class _Outlines:
     """Points (k, 2) on outlines, and the pieces (s, 2) between them."""
 
-    points: Floats
+    points: Reals
     pieces: Integers
 
 
-def planar_mesh(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask]) -> tuple[Floats, Integers]:
+def planar_mesh(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask]) -> tuple[Reals, Integers]:
     """Conforming Delaunay triangles of a region, along whose parts' outlines there are edges too.
 
     Parameters
@@ -71,7 +69,7 @@ def planar_mesh(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask]) -> tupl
     return P[used], T.reshape(-1, 3)
 
 
-def _outlines(plane: WorkingPlane, mask: Mask) -> list[Floats]:
+def _outlines(plane: WorkingPlane, mask: Mask) -> list[Reals]:
     """Closed lines (k, 2), mm, about the pieces of a mask and their holes."""
     soft = cv2.GaussianBlur(np.pad(mask.astype(np.float32), 2), (0, 0), _SOFT)
     lines = []
@@ -85,7 +83,7 @@ def _outlines(plane: WorkingPlane, mask: Mask) -> list[Floats]:
     return lines
 
 
-def _subdivided(line: Floats) -> Floats:
+def _subdivided(line: Reals) -> Reals:
     """A closed line whose pieces are no longer than the step."""
     pieces = []
     for a, b in zip(line, np.roll(line, -1, 0), strict=True):
@@ -94,7 +92,7 @@ def _subdivided(line: Floats) -> Floats:
     return np.vstack(pieces)
 
 
-def _runs(ring: Floats, kept: Mask) -> list[Floats]:
+def _runs(ring: Reals, kept: Mask) -> list[Reals]:
     """Open lines of consecutive kept points of a closed line; the whole, closed, if all are kept."""
     if kept.all():
         return [np.vstack([ring, ring[:1]])]
@@ -104,7 +102,7 @@ def _runs(ring: Floats, kept: Mask) -> list[Floats]:
     return [run for run in np.split(ring, cuts + 1)[1::2] if len(run) > 1]
 
 
-def _joined(lines: list[Floats]) -> _Outlines:
+def _joined(lines: list[Reals]) -> _Outlines:
     """All lines as one set of points; a closed line ends with its first point."""
     points, pieces, count = [], [], 0
     for line in lines:
@@ -117,9 +115,9 @@ def _joined(lines: list[Floats]) -> _Outlines:
     return _Outlines(np.vstack(points), np.vstack(pieces))
 
 
-def _inner_points(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask], taken: Floats) -> Floats:
+def _inner_points(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask], taken: Reals) -> Reals:
     """Rows of points beside the outlines, and hexagons between."""
-    rows: list[Floats] = []
+    rows: list[Reals] = []
     distances = [signed(mask) for mask in (whole, *parts)]
     for distance in distances:
         soft = cv2.GaussianBlur(distance, (0, 0), 1.5)
@@ -142,14 +140,14 @@ def _inner_points(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask], taken
     return np.vstack([*rows, grid])
 
 
-def _even(line: Floats) -> Floats:
+def _even(line: Reals) -> Reals:
     """Points of a line so many mm apart."""
     length = np.r_[0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
     at = np.arange(0, max(length[-1] - 0.5 * STEP_MM, 0.1), STEP_MM)
     return np.column_stack([np.interp(at, length, line[:, k]) for k in range(2)])
 
 
-def _conforming(outline: _Outlines, loose: Floats) -> tuple[Floats, Integers]:
+def _conforming(outline: _Outlines, loose: Reals) -> tuple[Reals, Integers]:
     """Delaunay triangles; pieces of the outlines are halved until each is an edge."""
     points, pieces = outline.points, outline.pieces
     for _ in range(_PASSES):
@@ -174,6 +172,6 @@ def _conforming(outline: _Outlines, loose: Floats) -> tuple[Floats, Integers]:
     return P, T[np.abs(area) > 1e-6]
 
 
-def _within(rings: list[Floats], points: Floats) -> Mask:
+def _within(rings: list[Reals], points: Reals) -> Mask:
     """Points (k,) within closed lines (even-odd)."""
     return np.asarray(np.logical_xor.reduce([points_in_poly(points, ring) for ring in rings]))

@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from toongeo.arrays import Mask
+from toongeo.arrays import Mask, Reals
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.above_nape import above_nape
 from toongeo.pipeline.hair.plane.depth_maps import ball_offset, depth_maps, silhouette
@@ -16,7 +15,6 @@ from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 
 __all__ = ["HeadRaster", "Regions", "head_raster", "regions"]
 
-Floats = NDArray[np.floating]
 
 CLEAR_MM = 2.0  # between skin, in all expressions, and hair
 _AROUND_MM = 3.0  # by which hair behind the head is larger than the scalp, where the face or ears hide it
@@ -47,10 +45,10 @@ class HeadRaster:
         The rearmost point of the crown.
     """
 
-    front: Floats
-    back: Floats
-    front_off: Floats
-    back_off: Floats
+    front: Reals
+    back: Reals
+    front_off: Reals
+    back_off: Reals
     crown: Mask
     neck: Mask
     rim_z: float
@@ -89,7 +87,7 @@ class Regions:
         return self.front | self.back
 
 
-def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Floats) -> HeadRaster:
+def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Reals) -> HeadRaster:
     """A head whose skin reaches to ``reach`` (n, 3), model frame, in some expression."""
     F, model = face.faces, face.model
     skin = model.region("skin") | model.region("neck")

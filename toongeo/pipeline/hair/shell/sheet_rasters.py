@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import grey_erosion
 
-from toongeo.arrays import Mask
+from toongeo.arrays import Mask, Reals
 from toongeo.pipeline.hair.plane.depth_maps import ball_offset
 from toongeo.pipeline.hair.plane.masks import nearest_set, signed
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
@@ -15,7 +14,6 @@ from toongeo.pipeline.hair.shell.regions import CLEAR_MM, HeadRaster, Regions
 
 __all__ = ["SheetMaps", "SheetRasters"]
 
-Floats = NDArray[np.floating]
 
 _WIDE_MM = 5.0  # ball that rolls over the skin where the hairline runs: it bridges the steep side of the cheeks
 _RAISED_MM = 2.0  # of that ball's surface, after it was lowered again
@@ -31,11 +29,11 @@ class SheetMaps:
     those that the hair's front is not below and its back not before; and which points lie on the head, and between
     hanging strands."""
 
-    on_skin: Floats
-    behind_skin: Floats
-    under: Floats
-    front_floor: Floats
-    back_floor: Floats
+    on_skin: Reals
+    behind_skin: Reals
+    under: Reals
+    front_floor: Reals
+    back_floor: Reals
     on_head: Mask
     hanging: Mask
 
@@ -48,14 +46,14 @@ class SheetRasters:
     parts: Regions
     head: HeadRaster
 
-    def at(self, P: Floats) -> SheetMaps:
+    def at(self, P: Reals) -> SheetMaps:
         """The maps at plane points (n, 2)."""
         depths = {name: self.plane.sample(raster, P) for name, raster in self._depths.items()}
         hanging, crown = (self.plane.sample(raster, P) for raster in self._distances[3:])
         on_head = self.plane.sample(self._aired.astype(np.float64), P) > 0.5
         return SheetMaps(**depths, on_head=on_head, hanging=(hanging > -2.5) & (crown < -2.5))
 
-    def shown(self, centres: Floats) -> tuple[Mask, Mask]:
+    def shown(self, centres: Reals) -> tuple[Mask, Mask]:
         """Triangles (m,), by their centres, whose front and whose back is seen; each at least on one side."""
         whole, front, back = (self.plane.sample(raster, centres) for raster in self._distances[:3])
         first, second = ((inside > 0) | ((inside > -1.5) & (whole < 2.5)) for inside in (front, back))
@@ -69,7 +67,7 @@ class SheetRasters:
         return float(np.clip((hair - crown) / 2, *_THICK_MM))
 
     @cached_property
-    def _depths(self) -> dict[str, Floats]:
+    def _depths(self) -> dict[str, Reals]:
         head = self.head
         rolled = ball_offset(head.front, _WIDE_MM) - (_WIDE_MM - _RAISED_MM)
         low = grey_erosion(np.where(head.head, head.front, np.inf), size=(5, 5))
@@ -82,7 +80,7 @@ class SheetRasters:
         }
 
     @cached_property
-    def _front_off(self) -> Floats:
+    def _front_off(self) -> Reals:
         """The front of the skin that hair lies on, with air; -inf elsewhere."""
         return ball_offset(np.where(self.parts.over_skin, self.head.front, -np.inf), CLEAR_MM)
 
@@ -91,12 +89,12 @@ class SheetRasters:
         return np.isfinite(self._front_off)
 
     @cached_property
-    def _distances(self) -> list[Floats]:
+    def _distances(self) -> list[Reals]:
         parts = self.parts
         return [signed(mask) for mask in (parts.whole, parts.front, parts.back, parts.hanging, self.head.crown)]
 
 
-def _falling(depth: Floats, known: Mask, side: int) -> Floats:
+def _falling(depth: Reals, known: Mask, side: int) -> Reals:
     """A depth map that falls off steeply beside the head; far away where there is none."""
     if not known.any():
         return np.full(depth.shape, side * _FAR_MM)

@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from toongeo.arrays import Integers, Mask
+from toongeo.arrays import Integers, Mask, Reals
 from toongeo.pipeline.hair.shell.edges import boundary_edges
 from toongeo.pipeline.hair.shell.harmonic import smooth_max, solved
 from toongeo.pipeline.hair.shell.regions import HeadRaster
@@ -14,7 +13,6 @@ from toongeo.pipeline.hair.shell.sheet_rasters import SheetMaps, SheetRasters
 
 __all__ = ["Sheets", "sheets"]
 
-Floats = NDArray[np.floating]
 
 _LIP_MM = 1.0  # between skin and the edge of hair that lies on it
 _BALL, _PUFF = 0.95, 0.5  # fullness of the whole outline, and of a strand, against a sphere's
@@ -40,10 +38,10 @@ class Sheets:
         Triangles where a sheet is seen; elsewhere it hides under the skin or lines the other sheet.
     """
 
-    points: Floats
+    points: Reals
     triangles: Integers
-    front: Floats
-    back: Floats
+    front: Reals
+    back: Reals
     front_shown: Mask
     back_shown: Mask
 
@@ -57,7 +55,7 @@ class _Sheet:
     used: Mask
 
 
-def sheets(P: Floats, T: Integers, rasters: SheetRasters) -> Sheets:
+def sheets(P: Reals, T: Integers, rasters: SheetRasters) -> Sheets:
     """Depths of the hair's front and back over triangles of the plane."""
     shown = rasters.shown(P[T].mean(1))
     rim = np.zeros(len(P), bool)
@@ -80,7 +78,7 @@ def sheets(P: Floats, T: Integers, rasters: SheetRasters) -> Sheets:
     return Sheets(P, T, np.where(rim, rim_z, z_front), np.where(rim, rim_z, z_back), *shown)
 
 
-def _lip(P: Floats, z: Floats, front: _Sheet, maps: SheetMaps) -> Floats:
+def _lip(P: Reals, z: Reals, front: _Sheet, maps: SheetMaps) -> Reals:
     """Depth (n,) of the first row beside the hairline, where the shell folds under the skin; -inf farther off.
 
     From there it falls to the back of the head: one fall all the way would be so large that it alone shaded the line.
@@ -100,7 +98,7 @@ def _sheet(T: Integers, n: int) -> _Sheet:
 
 def _rim_depth(
     maps: SheetMaps, head: HeadRaster, edges: Integers, rim: Mask, joined: Mask, front: _Sheet, back: _Sheet
-) -> Floats:
+) -> Reals:
     """Depth (n,) of the rim, and of the hairline: on the skin where there is some, else where the crown turns."""
     n = len(rim)
     depth = np.full(n, head.rim_z)
@@ -115,7 +113,7 @@ def _rim_depth(
     return _smoothed(_smoothed(depth, edges, floor, ceiling), boundary_edges(front.triangles), floor, ceiling)
 
 
-def _smoothed(values: Floats, edges: Integers, floor: Floats, ceiling: Floats) -> Floats:
+def _smoothed(values: Reals, edges: Integers, floor: Reals, ceiling: Reals) -> Reals:
     """Values smoothed along lines of edges, between bounds."""
     rows = np.unique(edges)
     ends = np.searchsorted(rows, edges)
@@ -130,8 +128,8 @@ def _smoothed(values: Floats, edges: Integers, floor: Floats, ceiling: Floats) -
 
 
 def _front(
-    P: Floats, T: Integers, front: _Sheet, rasters: SheetRasters, maps: SheetMaps, joined: Mask, depth: Floats
-) -> Floats:
+    P: Reals, T: Integers, front: _Sheet, rasters: SheetRasters, maps: SheetMaps, joined: Mask, depth: Reals
+) -> Reals:
     """The larger of a ball within the whole outline, drawn to the hairline, and of hair of a thickness on the skin."""
     n, head = len(P), rasters.head
     whole = solved(P, T, joined, np.zeros((n, 1)), np.array([4.0]))[:, 0]
@@ -151,7 +149,7 @@ def _front(
     return np.where(line, depth, smooth_max(z, maps.front_floor + thick, width))
 
 
-def _back(P: Floats, back: _Sheet, rasters: SheetRasters, maps: SheetMaps, rim: Mask, depth: Floats) -> Floats:
+def _back(P: Reals, back: _Sheet, rasters: SheetRasters, maps: SheetMaps, rim: Mask, depth: Reals) -> Reals:
     """The smaller of a membrane that is as full as the skull asks for, and of hair of a thickness behind the skin."""
     n, head = len(P), rasters.head
     free = back.border & ~rim
@@ -170,6 +168,6 @@ def _back(P: Floats, back: _Sheet, rasters: SheetRasters, maps: SheetMaps, rim: 
     return np.where(known, values[:, 0], z)
 
 
-def _distance(P: Floats, marked: Mask) -> Floats:
+def _distance(P: Reals, marked: Mask) -> Reals:
     """mm (n,) to the nearest marked point."""
     return cKDTree(P[marked]).query(P)[0] if marked.any() else np.full(len(P), 1e3)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.arrays import Integers
+from toongeo.arrays import Integers, Reals
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane
 from toongeo.pipeline.hair.shell.edges import boundary_edges, edges_of, halved
 from toongeo.pipeline.hair.shell.faired import faired
@@ -16,7 +16,6 @@ from toongeo.pipeline.hair.shell.sheets import Sheets, sheets
 
 __all__ = ["ShellMesh", "shell_mesh"]
 
-Floats = NDArray[np.floating]
 
 _LONGEST_MM = 10.0  # of an edge that is seen
 _MOST = 6_800  # triangles of a sheet, so that both have less than 15,000
@@ -36,7 +35,7 @@ class ShellMesh:
         False where a sheet only lines the other or hides in the head.
     """
 
-    vertices: Floats
+    vertices: Reals
     faces: Integers
     front: NDArray[np.bool_]
     shown: NDArray[np.bool_]

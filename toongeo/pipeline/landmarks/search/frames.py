@@ -1,11 +1,10 @@
 """Similarities between a picture and the upright crop of a face, as 2 x 3 matrices."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from toongeo.arrays import Floats
 
 __all__ = ["applied", "box_matrix", "box_of", "composed", "inverse", "similarity_onto"]
-
-Floats = NDArray[np.float64]
 
 
 def applied(matrix: Floats, points: Floats) -> Floats:

@@ -25,7 +25,7 @@ _PARTS = {
     "outer": np.array([2 * ARC - 1, 0, 1]),
     "inner": np.array([ARC - 1, ARC, ARC + 1]),
 }
-_EYE, _ALIEN, _STROKE, _LIGHT, _RED, _YELLOW, _BROW = range(len(CHANNELS))
+_EYE, _NON_SKIN, _STROKE, _LIGHT, _RED, _YELLOW, _BROW = range(len(CHANNELS))
 
 
 def lid_features(channels: Singles, candidates: LidCandidates) -> dict[str, Singles]:
@@ -85,7 +85,7 @@ def _contrast(inside: Singles, line: Singles, outside: Singles, beyond: Singles)
     return {
         "eye": step[:, _EYE],
         "eye outside": outside[..., _EYE].mean(axis=1),
-        "alien": step[:, _ALIEN],
+        "non_skin": step[:, _NON_SKIN],
         "light": step[:, _LIGHT],
         "redness": step[:, _RED],
         "yellowness": step[:, _YELLOW],
@@ -93,7 +93,7 @@ def _contrast(inside: Singles, line: Singles, outside: Singles, beyond: Singles)
         "stroke": line[..., _STROKE].mean(axis=1),
         "edge": np.abs(edge[..., _LIGHT]).mean(axis=1),
         "hue edge": np.hypot(edge[..., _RED], edge[..., _YELLOW]).mean(axis=1),
-        "alien beyond": beyond[..., _ALIEN].mean(axis=1),
+        "non_skin beyond": beyond[..., _NON_SKIN].mean(axis=1),
     }
 
 
@@ -104,18 +104,18 @@ def _content(rings: Singles) -> dict[str, Singles]:
     core, rim = means[:, 0], means[:, -1]
     return {
         "area eye": area[:, _EYE],
-        "area alien": area[:, _ALIEN],
+        "area non_skin": area[:, _NON_SKIN],
         "area stroke": area[:, _STROKE],
         "area light": area[:, _LIGHT],
         "area redness": area[:, _RED],
         "area yellowness": area[:, _YELLOW],
         "area brow": area[:, _BROW],
-        "core alien": core[:, _ALIEN],
+        "core non_skin": core[:, _NON_SKIN],
         "core light": core[:, _LIGHT],
-        "rim alien": rim[:, _ALIEN],
+        "rim non_skin": rim[:, _NON_SKIN],
         "rim light": rim[:, _LIGHT],
         "area contrast": (rings[..., _LIGHT] ** 2).mean(axis=(1, 2)),
-        "dark core": core[:, _LIGHT] * area[:, _ALIEN],
+        "dark core": core[:, _LIGHT] * area[:, _NON_SKIN],
     }
 
 
@@ -139,7 +139,7 @@ def _slit(bands: list[Singles], content: dict[str, Singles]) -> dict[str, Single
         "upper line": upper,
         "lower line": lower,
         "area eye": content["area eye"],
-        "area alien": content["area alien"],
+        "area non_skin": content["area non_skin"],
         "area light": content["area light"],
         "core line": content["core light"] - beyond[:, _PARTS["upper"]].mean(axis=1),
     }

@@ -20,7 +20,7 @@ from toongeo.pipeline.parse.skin_surface import SkinSurface, colour_mode, skin_s
 __all__ = ["CHANNELS", "EYES_APART", "RESOLUTION", "LidPatch", "eye_points", "lid_patch", "lid_unit"]
 
 RESOLUTION = 100.0  # px of a patch per outer-eye distance
-CHANNELS = ("eye", "alien", "stroke", "light", "redness", "yellowness", "brow")
+CHANNELS = ("eye", "non_skin", "stroke", "light", "redness", "yellowness", "brow")
 
 _MARGIN = 0.26  # outer-eye distances around the given eye: so far its lids are looked for
 _STROKE_PX = 7  # broadest line that counts as a stroke
@@ -153,7 +153,7 @@ def _channels(
 ) -> NDArray[np.float32]:
     """``CHANNELS`` (h, w, 7)."""
     off = lab - skin.colour
-    alien = 1 - np.exp(-0.5 * (off**2).sum(axis=2) / (2.2 * skin.spread) ** 2)
+    non_skin = 1 - np.exp(-0.5 * (off**2).sum(axis=2) / (2.2 * skin.spread) ** 2)
     spread = (np.std(off[head], axis=0).mean() if head.any() else 0.0) + 4.0
     lightness = np.ascontiguousarray(lab[..., 0])
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (_STROKE_PX, _STROKE_PX))
@@ -161,5 +161,5 @@ def _channels(
     stroke = np.clip(valley / (1.5 * spread), 0, 1) * (off[..., 0] < 0)
     squashed = np.tanh(off / (spread * np.array([2.0, 1.0, 1.0])))
     soft_brow = cv2.GaussianBlur(brow.astype(np.float32), (0, 0), 2)
-    planes = [alien * (1 - stroke) + 0.5 * stroke, alien, stroke, *np.moveaxis(squashed, 2, 0), soft_brow]
+    planes = [non_skin * (1 - stroke) + 0.5 * stroke, non_skin, stroke, *np.moveaxis(squashed, 2, 0), soft_brow]
     return np.stack(planes, axis=2).astype(np.float32)

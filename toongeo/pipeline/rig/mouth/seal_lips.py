@@ -54,12 +54,12 @@ def seal_lips(face: AlignedFace, rig: Rig) -> Rig:
     crossed = -_CROSSED * np.linalg.norm(neutral[line.upper[-1]] - neutral[line.upper[0]])
     drawn = [np.maximum(heights, crossed) for heights in _heights(line, face.vertices, up)]
     neutral[line.follows] += line.spread @ _parting(line, neutral, up, drawn)
-    at_rest = _heights(line, neutral, up)
+    neutral_aligned = _heights(line, neutral, up)
     sealed = [rig.names.index(name) for name in ("mouthClose", "mouthPucker") if name in rig.names]
     moves = np.abs(deltas[:, line.vertices]).max((1, 2)) > _MOVES_MM
     moves[sealed] = False
     for k in np.flatnonzero(moves):
-        deltas[k, line.follows] += line.spread @ _parting(line, neutral + deltas[k], up, at_rest)
+        deltas[k, line.follows] += line.spread @ _parting(line, neutral + deltas[k], up, neutral_aligned)
     report = rig.report
     for seal in sealed:
         pucker, jaw_too = rig.names[seal] == "mouthPucker", "jawOpen" in rig.names
@@ -84,13 +84,13 @@ def _sealing(line: LipLine, V: np.ndarray, up: np.ndarray) -> np.ndarray:
     return np.vstack([to_upper - upper, (to_lower - lower)[1:-1]])
 
 
-def _parting(line: LipLine, V: np.ndarray, up: np.ndarray, at_rest: list[np.ndarray]) -> np.ndarray:
+def _parting(line: LipLine, V: np.ndarray, up: np.ndarray, neutral_aligned: list[np.ndarray]) -> np.ndarray:
     """Shifts (u + l - 2, 3) of the line, up and down, that keep each lip on its side of the other."""
     shift = np.zeros((len(line.vertices), 3))
     at_upper, at_lower = arc_shares(V[line.upper]), arc_shares(V[line.lower])
     place = np.r_[at_upper, at_upper[line.upper_column], at_lower, at_lower[line.lower_column]]
     least = 2 * GAP * np.linalg.norm(V[line.upper[-1]] - V[line.upper[0]]) * _taper(place, _CORNER)
-    rest = np.concatenate(at_rest)
+    rest = np.concatenate(neutral_aligned)
     least = np.minimum(np.where(np.isinf(rest), 0.0, rest), least)
     for _ in range(_ROUNDS):
         moved = V.copy()
