@@ -28,6 +28,7 @@ CHOSEN_ON = {
     "caricature": (*EXAMPLES, *CARICATURES),  # on eight of the caricatures; which ones was not written down
     "caricature_expressions": (*EXAMPLES, *CARICATURES),
     "contacts": (*EXAMPLES, *CARICATURES),
+    "detection": ("astronaut",),  # that a face beside a sure one must be as sure; the rest saw renders only
     "driving": EXAMPLES,
     "editing": EXAMPLES,
     "eos": (*EXAMPLES, *PORTRAITS),  # the weight of the prior; in this comparison eos sets it

@@ -1,8 +1,8 @@
-"""One portrait and its 68 landmarks in; a textured, rigged, animatable 3D face out.
+"""One portrait in; a textured, rigged, animatable 3D face out.
 
 The stages, in the order in which :func:`make_avatar` calls them:
 
-1. :func:`read_image`, :func:`read_landmarks` - the picture and its points.
+1. :func:`read_image`, and :func:`detect_landmarks` or :func:`read_landmarks` - the picture and its points.
 2. :func:`fit_3dmm` - a morphable model posed and shaped by the landmarks (and by the picture: :func:`photometric_fit`).
 3. :func:`parse_face`, :func:`snap_eyes` - the parts of the picture, and eye landmarks that lie on the lids.
 4. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.

@@ -61,6 +61,8 @@ from toongeo.pipeline import bake_eyes as bake_eyes
 from toongeo.pipeline import bake_texture as bake_texture
 from toongeo.pipeline import build_rig as build_rig
 from toongeo.pipeline import close_lids as close_lids
+from toongeo.pipeline import detect_faces as detect_faces
+from toongeo.pipeline import detect_landmarks as detect_landmarks
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_3dmm_together as fit_3dmm_together
@@ -82,6 +84,8 @@ from toongeo.protocols import Coefficients as Coefficients
 from toongeo.protocols import ExpressionDriver as ExpressionDriver
 from toongeo.protocols import FaceLabel as FaceLabel
 from toongeo.protocols import FaceParse as FaceParse
+from toongeo.protocols import LandmarkDetection as LandmarkDetection
+from toongeo.protocols import LandmarkDetector as LandmarkDetector
 from toongeo.protocols import LandmarkMapper as LandmarkMapper
 from toongeo.protocols import TextureGenerator as TextureGenerator
 from toongeo.protocols import TextureGeometry as TextureGeometry

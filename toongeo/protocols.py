@@ -119,6 +119,55 @@ class Regressor(Protocol):
         ...
 
 
+@dataclass(frozen=True, eq=False)
+class LandmarkDetection:
+    """A face that was found in a picture.
+
+    Attributes
+    ----------
+    points : (68, 2) float64 px
+        iBUG-68 order; x right, y down, integer = pixel centre.
+    confidence : (68,) float64 in [0, 1]
+        The chance of each point to lie within 8 % of the outer-eye distance from its place.
+    score : float in [0, 1]
+        The chance that this is a face at all.
+    """
+
+    points: np.ndarray
+    confidence: np.ndarray
+    score: float
+
+    def __post_init__(self) -> None:
+        points, confidence = np.array(self.points, np.float64), np.array(self.confidence, np.float64)
+        if points.shape != (68, 2) or not np.isfinite(points).all():
+            raise ValueError(f"points: expected (68, 2) finite px, got {points.shape} or NaN or infinity")
+        if confidence.shape != (68,) or not ((confidence >= 0) & (confidence <= 1)).all():
+            raise ValueError(f"confidence: expected (68,) numbers in [0, 1], got {confidence.shape} or others")
+        if not 0 <= self.score <= 1:
+            raise ValueError(f"score: expected a number in [0, 1], got {self.score}")
+        for name, array in (("points", points), ("confidence", confidence)):
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+    @property
+    def box(self) -> np.ndarray:
+        """(4,) px: left, top, right and bottom of the points."""
+        return np.concatenate([self.points.min(axis=0), self.points.max(axis=0)])
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether this is likely a face whose points are mostly in their places; if not, a person should look."""
+        return self.score >= 0.5 and float(self.confidence[17:].mean()) >= 0.5
+
+
+class LandmarkDetector(Protocol):
+    """Finds the faces of a picture and their landmarks; a network, say, or `detect_faces`."""
+
+    def __call__(self, img: np.ndarray) -> list[LandmarkDetection]:
+        """The faces of the picture (H, W, 3) uint8, the largest first."""
+        ...
+
+
 class FaceLabel(IntEnum):
     """What a pixel of a parsed face shows. Left and right are the subject's."""
 

@@ -1,10 +1,13 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from tests.conftest import PORTRAITS
 from toongeo.app.cli import main
+from toongeo.io import write_image
+from toongeo.protocols import LandmarkDetection
 
 PICTURE, POINTS = PORTRAITS / "blue_girl.png", PORTRAITS / "blue_girl.pts"
 
@@ -15,6 +18,34 @@ def test_make_writes_what_it_says(tmp_path, capsys):
     assert out.read_bytes()[:4] == b"glTF"
     printed = capsys.readouterr().out
     assert str(out) in printed and "self-intersect" in printed and "inner51" in printed
+
+
+def test_make_finds_the_landmarks_itself(tmp_path, capsys):
+    out = tmp_path / "girl.ply"
+    assert main(["make", str(PICTURE), "-o", str(out), "--texture-size", "64"]) == 0
+    assert "landmarks found: face" in capsys.readouterr().out
+    assert out.stat().st_size > 1e5
+
+
+def test_landmarks_that_are_not_sure_need_a_word(tmp_path, capsys, monkeypatch):
+    points = np.random.default_rng(0).uniform(0, 60, (68, 2))
+    doubtful = LandmarkDetection(points, np.full(68, 0.3), 0.9)
+    monkeypatch.setattr("toongeo.app.landmark_source.detect_landmarks", lambda img, face: doubtful)
+    arguments = ["make", str(PICTURE), "-o", str(tmp_path / "girl.glb")]
+    assert main(arguments) == 3
+    said = capsys.readouterr().err
+    assert "not sure (face 90 %, points 30 %)" in said and "toongeo landmarks" in said and "--accept" in said
+    assert main([*arguments, "--accept"]) == 2  # goes on, to a fit that such points have not
+    assert "landmarks" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_picture_without_a_face_is_refused(tmp_path, capsys):
+    write_image(tmp_path / "wall.png", np.full((80, 90, 3), 120, np.uint8))
+    assert main(["make", str(tmp_path / "wall.png"), "-o", str(tmp_path / "wall.glb")]) == 2
+    assert "no face was found" in capsys.readouterr().err
+    assert main(["make", str(PICTURE), "-o", str(tmp_path / "girl.glb"), "--face", "7"]) == 2
+    assert "found in the picture" in capsys.readouterr().err
 
 
 def test_make_crops_snaps_and_refines(tmp_path, capsys):

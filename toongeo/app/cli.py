@@ -7,6 +7,7 @@ from typing import Any
 
 from toongeo import __version__
 from toongeo.app.bench.commands import add_bench
+from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
 __all__ = ["main"]
 
@@ -25,12 +26,15 @@ def main(arguments: list[str] | None = None) -> int:
     Returns
     -------
     int
-        0 if all went well; 2 on bad input, a failed fit or a missing extra, with one line on standard error that says
-        what and where.
+        0 if all went well; 2 on bad input, a failed fit or a missing extra, 3 if landmarks were found that are not
+        sure, with one line on standard error that says what and where.
     """
     options = _parser().parse_args(arguments)
     try:
         options.run(options)
+    except UnsureLandmarksError as error:
+        print(f"toongeo: {error}", file=sys.stderr)
+        return 3
     except (ValueError, OSError, RuntimeError, ImportError) as error:
         print(f"toongeo: {error}", file=sys.stderr)
         return 2
@@ -38,14 +42,12 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="toongeo", description="One portrait and its 68 landmarks in, an animatable 3D face out."
-    )
+    parser = argparse.ArgumentParser(prog="toongeo", description="One portrait in, an animatable 3D face out.")
     parser.add_argument("--version", action="version", version=f"toongeo {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
-    make = commands.add_parser("make", help="turn a picture and its landmarks into an avatar")
+    make = commands.add_parser("make", help="turn a picture into an avatar")
     make.add_argument("image", type=Path, metavar="IMAGE")
-    make.add_argument("--landmarks", type=Path, required=True, metavar="FILE", help=".pts, .npy, .csv or .txt")
+    _add_landmarks(make)
     make.add_argument(
         "-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, .vrm, .html, .usdz, .obj, .ply"
     )
@@ -87,6 +89,14 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
+def _add_landmarks(command: argparse.ArgumentParser) -> None:
+    """Where the 68 points of a picture come from."""
+    source = command.add_mutually_exclusive_group()
+    source.add_argument("--landmarks", type=Path, metavar="FILE", help=".pts, .npy, .csv or .txt; found if not given")
+    source.add_argument("--face", type=int, default=0, metavar="N", help="which face to find (default 0, the largest)")
+    command.add_argument("--accept", action="store_true", help="go on with landmarks that were found but are not sure")
+
+
 def _add_drive(commands: Any) -> None:
     drive = commands.add_parser("drive", help="play a performance on an avatar, as a video or an animated GLB")
     drive.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
@@ -115,17 +125,17 @@ def _add_serve(commands: Any) -> None:
 
 
 def _make(options: argparse.Namespace) -> None:
+    from toongeo.app.landmark_source import LandmarkSource
     from toongeo.app.make import make
 
     make(
         options.image,
-        options.landmarks,
         options.output,
+        LandmarkSource(options.landmarks, options.scheme, options.face, options.accept),
         texture_size=options.texture_size,
         crop=options.crop,
         snap=options.snap,
         photometric=options.photometric,
-        scheme=options.scheme,
         format=options.format,
         options=_saving(options),
     )

@@ -1,18 +1,20 @@
-"""``toongeo demo``: the main job on a bundled picture."""
+"""``toongeo demo``: the main job on a bundled picture, whose landmarks are found."""
 
 import time
 from pathlib import Path
 
 from toongeo.app.check_output import check_output
 from toongeo.app.contact_sheet import contact_sheet
+from toongeo.app.landmark_source import LandmarkSource
 from toongeo.app.make import make
-from toongeo.io import atomic_write, read_image, read_landmarks
+from toongeo.io import atomic_write, read_image
 from toongeo.io.side_files import check_side_files, marked_picture
 from toongeo.model import data_path
+from toongeo.pipeline import detect_landmarks
 
 __all__ = ["demo"]
 
-_PICTURE = "examples/portraits/moustache_man"
+_PICTURE = "examples/portraits/moustache_man.png"
 _GLB, _OBJ, _SHEET = "avatar.glb", "avatar.obj", "contact-sheet.png"
 _OWNER = "toongeo demo"
 
@@ -30,10 +32,11 @@ def demo(folder: Path) -> None:
     started = time.perf_counter()
     folder.mkdir(parents=True, exist_ok=True)
     _check_folder(folder)
-    image, landmarks = data_path(f"{_PICTURE}.png"), data_path(f"{_PICTURE}.pts")
-    avatar = make(image, landmarks, folder / _GLB)
+    image = data_path(_PICTURE)
+    img = read_image(image)
+    avatar = make(image, folder / _GLB, LandmarkSource())
     avatar.save(folder / _OBJ)
-    sheet = contact_sheet(avatar, read_image(image), read_landmarks(landmarks))
+    sheet = contact_sheet(avatar, img, detect_landmarks(img).points)
     atomic_write({folder / _SHEET: marked_picture(sheet, _OWNER)})
     for path in sorted(folder.iterdir()):
         print(f"{path.stat().st_size / 1e6:7.2f} MB  {path}")

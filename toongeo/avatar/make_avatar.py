@@ -1,4 +1,4 @@
-"""Every stage in order: one picture and its landmarks in, an avatar out."""
+"""Every stage in order: one picture in, an avatar out."""
 
 import dataclasses
 import time
@@ -9,7 +9,7 @@ import numpy as np
 
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.missing_parts import missing_parts
-from toongeo.avatar.report import AvatarReport, landmark_errors, shape_warnings
+from toongeo.avatar.report import AvatarReport, detection_warnings, landmark_errors, shape_warnings
 from toongeo.caricature import caricature_rig
 from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import check_image
@@ -24,6 +24,7 @@ from toongeo.pipeline import (
     bake_eyes,
     bake_texture,
     build_rig,
+    detect_landmarks,
     find_irises,
     fit_3dmm,
     fit_lids,
@@ -49,7 +50,7 @@ _ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
 
 def make_avatar(
     img: np.ndarray,
-    landmarks: np.ndarray,
+    landmarks: np.ndarray | None = None,
     *,
     model: MorphableModel | None = None,
     parser: FaceParser | None = None,
@@ -68,8 +69,9 @@ def make_avatar(
     Parameters
     ----------
     img : (H, W, 3) uint8 RGB
-    landmarks : (68, 2) float, px
-        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
+    landmarks : (68, 2) float, px, optional
+        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing. None: those of the largest face
+        that :func:`toongeo.detect_landmarks` finds; the report warns if it is not sure of them.
     model : MorphableModel, optional
         :func:`toongeo.default_model` unless another is given. What it does not have (eyeballs, teeth, expressions,
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
@@ -108,7 +110,8 @@ def make_avatar(
     Raises
     ------
     ValueError
-        If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, or method or rig is unknown.
+        If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, no face was found where none are
+        given, or method or rig is unknown.
     """
     align = _ALIGNERS.get(method)
     if align is None:
@@ -120,6 +123,10 @@ def make_avatar(
     clock = _Clock(progress)
 
     clock.start("fit")
+    doubts: tuple[str, ...] = ()
+    if landmarks is None:
+        found = detect_landmarks(img)
+        landmarks, scheme, doubts = found.points, "ibug68", detection_warnings(found)
     model = model or default_model()
     if isinstance(scheme, str):
         landmarks = ibug_landmarks(landmarks, scheme)
@@ -157,7 +164,7 @@ def make_avatar(
         aligned=landmark_errors(face, landmarks),
         quality=quality,
         seconds=clock.stop(),
-        warnings=(*fit.report.warnings, *missing_parts(model), *shape_warnings(face, eyes, quality)),
+        warnings=(*doubts, *fit.report.warnings, *missing_parts(model), *shape_warnings(face, eyes, quality)),
     )
     return Avatar(fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report)
 

@@ -6,8 +6,9 @@ import numpy as np
 
 from toongeo.metrics import MeshQuality, landmark_error
 from toongeo.model.anatomy.parts import SIDES
-from toongeo.model.ibug68 import OUTER_EYES
+from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit
+from toongeo.protocols import LandmarkDetection
 
 __all__ = ["AvatarReport", "landmark_errors", "shape_warnings"]
 
@@ -55,6 +56,14 @@ def landmark_errors(face: FaceFit | AlignedFace, landmarks: np.ndarray) -> dict[
     found = face.project(face.vertices[face.landmark_vertices])
     right, left = np.where(np.isfinite(landmarks), landmarks, found)[list(OUTER_EYES)]
     return landmark_error(found, landmarks, scale=float(np.linalg.norm(left - right)))
+
+
+def detection_warnings(found: LandmarkDetection) -> tuple[str, ...]:
+    """What is doubtful about landmarks that were not set by hand."""
+    if found.is_sure:
+        return ()
+    trust = 100 * float(found.confidence[INNER].mean())
+    return (f"the landmarks that were found are not sure (face {100 * found.score:.0f} %, points {trust:.0f} %)",)
 
 
 def shape_warnings(face: AlignedFace, eyes: Eyes, quality: MeshQuality) -> list[str]:

@@ -8,6 +8,7 @@ import numpy as np
 from toongeo.editing.expression_editor import ExpressionEditor
 from toongeo.model import MorphableModel
 from toongeo.pipeline import fit_3dmm
+from toongeo.pipeline.landmarks.given_or_found import given_or_found
 from toongeo.protocols import TextureGenerator
 
 __all__ = ["edit_expression", "reference_weights"]
@@ -15,7 +16,7 @@ __all__ = ["edit_expression", "reference_weights"]
 
 def edit_expression(
     img: np.ndarray,
-    landmarks: np.ndarray,
+    landmarks: np.ndarray | None = None,
     weights: Mapping[str, float] | np.ndarray | None = None,
     *,
     reference: tuple[np.ndarray | None, np.ndarray] | None = None,
@@ -27,8 +28,9 @@ def edit_expression(
     Parameters
     ----------
     img : (H, W, 3) uint8 RGB
-    landmarks : (68, 2) float, px
-        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing.
+    landmarks : (68, 2) float, px, optional
+        iBUG-68 points; x right, y down, integer = pixel centre. NaN rows are missing. None: those of the largest face
+        that :func:`toongeo.detect_landmarks` finds.
     weights : mapping of name to weight, (46,) array or (54,) array
         The expression of the result. 1 is the full expression; names that are left out are 0.
     reference : (picture or None, landmarks), optional
@@ -52,6 +54,7 @@ def edit_expression(
     if (weights is None) == (reference is None):
         raise ValueError("weights, reference: expected one of them, got " + ("neither" if weights is None else "both"))
     wanted = weights if reference is None else reference_weights(reference, scheme=scheme)
+    landmarks = np.asarray(given_or_found(img, landmarks, scheme))
     return ExpressionEditor(img, landmarks, generator=generator, scheme=scheme).frame(wanted)
 
 

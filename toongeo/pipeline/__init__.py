@@ -1,4 +1,4 @@
-"""The way of the data, a stage a folder: fit, parse, align, texture, rig."""
+"""The way of the data, a stage a folder: landmarks, fit, parse, align, texture, rig."""
 
 from toongeo._lazy import attach
 

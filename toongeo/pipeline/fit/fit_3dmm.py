@@ -15,6 +15,7 @@ from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
 from toongeo.pipeline.fit.photometric_fit import photometric_fit
 from toongeo.pipeline.fit.problem.fit_task import check_call, fit_task
+from toongeo.pipeline.landmarks.given_or_found import given_or_found
 from toongeo.protocols import Regressor
 
 __all__ = ["fit_3dmm"]
@@ -22,7 +23,7 @@ __all__ = ["fit_3dmm"]
 
 def fit_3dmm(
     img: NDArray[np.uint8] | None,
-    landmarks: ArrayLike,
+    landmarks: ArrayLike | None = None,
     *,
     model: MorphableModel | None = None,
     algorithm: str = "LD_LBFGS",
@@ -48,8 +49,9 @@ def fit_3dmm(
     ----------
     img : (H, W, 3) uint8 array or None
         The picture; without the photometric term only its size is looked at, to check the landmarks against.
-    landmarks : (68, 2) array_like, px
+    landmarks : (68, 2) array_like, px, optional
         iBUG-68 order, or as ``scheme`` says; x right, y down, integer = pixel centre. A NaN row is a missing point.
+        None: those of the largest face that `detect_landmarks` finds.
     model : MorphableModel, optional
         `default_model` if None.
     algorithm : str
@@ -75,8 +77,9 @@ def fit_3dmm(
     ValueError
         If the landmarks are not numbers, have another shape, hold infinities, are fewer than 6, coincide, lie on a
         line or outside the picture; the picture is not (H, W, 3) uint8; the algorithm is not known. If a regressor
-        returns something else than coefficients, or of another shape. If there are several pictures. If
-        ``photometric`` is asked for without a picture, with ``adjust``, a landmark table or a perspective camera.
+        returns something else than coefficients, or of another shape. If there are several pictures, or no landmarks
+        and no face or no picture to find them in. If ``photometric`` is asked for without a picture, with ``adjust``, a
+        landmark table or a perspective camera.
     RuntimeError
         If the optimizer fails.
 
@@ -103,6 +106,7 @@ def fit_3dmm(
         raise ValueError(f"img: expected one picture or None, got {len(img)}; fit_3dmm_together fits several")
     if photometric:
         _check_photometric(img, options)
+    landmarks = given_or_found(img, landmarks, options.scheme)
     task = fit_task(img, landmarks, default_model() if model is None else model, options, regressor)
     with one_thread():
         solution = task.problem.solve(algorithm)

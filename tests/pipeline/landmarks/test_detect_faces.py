@@ -1,0 +1,139 @@
+import numpy as np
+import pytest
+import skimage.data
+
+from toongeo import detect_faces, detect_landmarks
+from toongeo.metrics import landmark_error
+from toongeo.model.ibug68 import MIRROR
+from toongeo.pipeline import NoFaceError
+from toongeo.protocols import LandmarkDetection
+
+
+def inner_error(found, truth):
+    return landmark_error(found, truth)["inner51"]
+
+
+@pytest.fixture(scope="module")
+def photograph(render):
+    return render(0)
+
+
+@pytest.fixture(scope="module")
+def found(photograph):
+    return detect_landmarks(photograph.picture)
+
+
+def test_most_renders_are_found_with_their_points(render):
+    errors = []
+    for k in range(1, 9):
+        truth = render(k, ("person", "caricature", "cartoon")[k % 3], ("photo", "painted", "flat")[k % 3])
+        faces = detect_faces(truth.picture)
+        errors.append(min((inner_error(face.points, truth.landmarks) for face in faces), default=np.inf))
+    assert np.median(errors) < 0.06
+    assert np.sum(np.array(errors) < 0.12) >= 6
+
+
+def test_the_same_picture_gives_the_same_bytes(photograph, found):
+    again = detect_landmarks(photograph.picture)
+    assert again.points.tobytes() == found.points.tobytes()
+    assert again.confidence.tobytes() == found.confidence.tobytes()
+
+
+def test_points_follow_a_picture_that_is_mirrored_moved_or_enlarged(photograph, found):
+    picture, width = photograph.picture, photograph.picture.shape[1]
+    mirrored = detect_landmarks(np.ascontiguousarray(picture[:, ::-1])).points[MIRROR] * [-1, 1] + [width - 1, 0]
+    moved = detect_landmarks(np.pad(picture, ((40, 0), (64, 0), (0, 0)), "edge")).points - [64, 40]
+    larger = (detect_landmarks(np.repeat(np.repeat(picture, 3, 0), 3, 1)).points + 0.5) / 3 - 0.5
+    for points in (mirrored, moved, larger):
+        assert inner_error(points, found.points) < 0.03
+
+
+def test_a_tilted_face_is_found(photograph, found):
+    import cv2
+
+    turn = cv2.getRotationMatrix2D((159.5, 159.5), 40, 1)
+    tilted = cv2.warpAffine(photograph.picture, turn, (320, 320), borderMode=cv2.BORDER_REPLICATE)
+    assert inner_error(detect_landmarks(tilted).points, found.points @ turn[:, :2].T + turn[:, 2]) < 0.05
+
+
+def test_faces_come_by_size(render):
+    large, small = render(0), render(0, size=200)
+    picture = np.full((320, 560, 3), 90, np.uint8)
+    picture[:, 240:] = large.picture
+    picture[60:260, 20:220] = small.picture
+    faces = detect_faces(picture)
+    assert len(faces) == 2
+    assert inner_error(faces[0].points, large.landmarks + [240, 0]) < 0.06
+    assert inner_error(detect_landmarks(picture, face=1).points, small.landmarks + [20, 60]) < 0.08
+    with pytest.raises(NoFaceError, match="only 2 faces were found"):
+        detect_landmarks(picture, face=2)
+
+
+@pytest.mark.parametrize("value", [0, 128, 255])
+def test_a_blank_picture_has_no_face(value):
+    assert detect_faces(np.full((90, 120, 3), value, np.uint8)) == []
+
+
+@pytest.mark.parametrize("name", ["chelsea", "coins", "page"])
+def test_animals_coins_and_text_have_no_face(name):
+    picture = getattr(skimage.data, name)()
+    assert detect_faces(picture if picture.ndim == 3 else np.stack([picture] * 3, axis=2)) == []
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (3, 200), (9, 9), (40, 4000)])
+def test_pictures_too_small_for_a_face_have_none(shape, rng):
+    assert detect_faces(rng.integers(0, 255, (*shape, 3), dtype=np.uint8)) == []
+
+
+def test_no_face_is_an_error_that_says_what_to_do():
+    with pytest.raises(NoFaceError, match=r"no face was found in the picture of 30 x 20 px; give .*--landmarks"):
+        detect_landmarks(np.zeros((20, 30, 3), np.uint8))
+
+
+def test_bad_input_is_refused():
+    with pytest.raises(ValueError, match=r"img: expected \(H, W, 3\) uint8"):
+        detect_faces(np.zeros((20, 30, 3)))
+    with pytest.raises(ValueError, match="face: expected 0 for the largest"):
+        detect_landmarks(np.zeros((20, 30, 3), np.uint8), face=-1)
+
+
+def test_another_detector_can_take_its_place():
+    points = np.random.default_rng(0).uniform(0, 50, (68, 2))
+
+    def detector(img):
+        return [LandmarkDetection(points, np.full(68, 0.9), 0.8)]
+
+    found = detect_landmarks(np.zeros((60, 60, 3), np.uint8), detector=detector)
+    np.testing.assert_array_equal(found.points, points)
+    np.testing.assert_array_equal(found.box, [*points.min(0), *points.max(0)])
+    assert found.is_sure
+
+
+@pytest.mark.parametrize(
+    ("points", "confidence", "score", "message"),
+    [
+        (np.zeros((51, 2)), np.ones(68), 1, r"points: expected \(68, 2\)"),
+        (np.full((68, 2), np.nan), np.ones(68), 1, "points: expected"),
+        (np.zeros((68, 2)), np.full(68, 2), 1, "confidence: expected"),
+        (np.zeros((68, 2)), np.ones(68), 1.5, "score: expected"),
+    ],
+)
+def test_a_detection_is_checked(points, confidence, score, message):
+    with pytest.raises(ValueError, match=message):
+        LandmarkDetection(points, confidence, score)
+
+
+def test_confidence_means_what_it_says(render):
+    """On renders: of points with a chance p, about the share p lies within 8 % of the outer-eye distance."""
+    chances, right = [], []
+    for k in range(20, 32):
+        truth = render(k, ("person", "caricature", "cartoon")[k % 3], ("photo", "painted", "flat")[k % 3])
+        for face in detect_faces(truth.picture):
+            if inner_error(face.points, truth.landmarks) < 0.3:
+                eyes = np.linalg.norm(truth.landmarks[36] - truth.landmarks[45])
+                chances.append(face.confidence)
+                right.append(np.linalg.norm(face.points - truth.landmarks, axis=1) < 0.08 * eyes)
+    chances, right = np.concatenate(chances), np.concatenate(right)
+    assert abs(chances.mean() - right.mean()) < 0.1
+    low, high = chances < np.median(chances), chances >= np.median(chances)
+    assert right[high].mean() > right[low].mean() + 0.05

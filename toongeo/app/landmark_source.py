@@ -1,0 +1,49 @@
+"""Where a command takes the landmarks of its picture from."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
+from toongeo.io import read_landmarks
+from toongeo.model.ibug68 import INNER
+from toongeo.pipeline import detect_landmarks
+from toongeo.protocols import LandmarkDetection
+
+__all__ = ["LandmarkSource"]
+
+
+@dataclass(frozen=True)
+class LandmarkSource:
+    """A file of landmarks of a scheme or, without one, which face to find; `accept` takes points that are not sure."""
+
+    file: Path | None = None
+    scheme: str = "ibug68"
+    face: int = 0
+    accept: bool = False
+
+    def landmarks(self, image: Path, img: NDArray[np.uint8]) -> tuple[NDArray[np.float64], LandmarkDetection | None]:
+        """Landmarks (k, 2) px of the picture, and how they were found if they were.
+
+        Raises
+        ------
+        UnsureLandmarksError
+            If they were found but a person should look at them.
+        ValueError, OSError
+            If the file cannot be read, or there is no such face.
+        """
+        if self.file is not None:
+            return read_landmarks(self.file, scheme=self.scheme), None
+        if self.scheme != "ibug68":
+            raise ValueError(f"scheme: expected --landmarks FILE with --scheme, got {self.scheme!r} alone")
+        found = detect_landmarks(img, face=self.face)
+        if not (found.is_sure or self.accept):
+            trust = 100 * float(found.confidence[INNER].mean())
+            raise UnsureLandmarksError(
+                f"{image}: the landmarks that were found are not sure (face {100 * found.score:.0f} %, points "
+                f"{trust:.0f} %); correct them with toongeo landmarks {image}, give others with --landmarks FILE, or "
+                "go on with --accept"
+            )
+        return found.points, found
