@@ -28,7 +28,7 @@ from toongeo.pipeline.landmarks.search.detector_file import DetectorParts, detec
 from toongeo.pipeline.landmarks.search.face_judge import FaceJudge
 
 _HEADS, _HELD_OUT = 2250, 250
-_BOX_HEADS, _VERIFIER_HEADS, _JUDGE_HEADS = 1200, 700, 100
+_BOX_HEADS, _VERIFIER_HEADS, _JUDGE_HEADS = 1200, 1000, 100
 _PROCEDURAL = 40  # pictures of clutter
 _UNTRAINED = FaceJudge(np.zeros(5), np.zeros((len(PARTS), 6)))
 

@@ -20,6 +20,7 @@ __all__ = ["train_verifier"]
 _RIDGE = 0.3
 _JITTER = 0.1
 _CLOSE, _AWAY = 0.15, 0.35  # radii: mean error of a face that was found, and of one that was not
+_SEARCHED = 3  # one render in so many is searched for what is taken for a face
 _BOXES = 8  # wrong ones of each picture
 _ROUNDS, _HARD, _REPEAT = 3, -0.5, 2  # clutter above that score counts more
 
@@ -68,7 +69,7 @@ def _described(job: tuple[str, int]) -> list[tuple[NDArray[np.float32], int]]:
     points, row = _run(grey, start, cascade)
     if np.linalg.norm(points - truth, axis=1).mean() < _CLOSE * face[2]:
         out.append((row, view_of(truth)))
-    if k % 4 == 0:
+    if k % _SEARCHED == 0:
         for box in face_boxes(grey, boxes, _BOXES):
             points, row = _run(grey, box, cascade)
             if np.linalg.norm(points - truth, axis=1).mean() > _AWAY * face[2]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.geometry.one_thread import one_thread
 from toongeo.pipeline.landmarks.search.face_crop import face_crop, point_descriptors
 from toongeo.pipeline.landmarks.search.frames import applied, composed, inverse, similarity_onto
 
@@ -47,8 +46,7 @@ class CascadeStage:
     def moved(self, crop: np.ndarray, points: NDArray[np.float64], shape: NDArray[np.float32]) -> NDArray[np.float64]:
         """The points (k, 2) after this stage; `shape` (s,) are the terms of the shape so far."""
         row = np.concatenate([self.coordinates(crop, points), shape, np.ones(1, np.float32)])
-        with one_thread():  # how BLAS splits a sum among threads would show in the last digits
-            return points + (row @ self.weights).reshape(-1, 2)
+        return points + (row @ self.weights).reshape(-1, 2)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from toongeo.geometry.one_thread import one_thread
 from toongeo.pipeline.landmarks.search.orientation_maps import DIRECTIONS, orientation_maps
 
 __all__ = ["BOX_RADIUS_PX", "WINDOW_PX", "BoxTemplates", "box_descriptor", "face_boxes"]
@@ -71,8 +70,7 @@ def _level(grey: np.ndarray, scale: float, templates: BoxTemplates) -> NDArray[n
         return np.zeros((0, 4))
     windows = sliding_window_view(_histograms(level), (_CELLS, _CELLS), axis=(0, 1))
     rows = windows.transpose(0, 1, 3, 4, 2).reshape(-1, _CELLS * _CELLS * DIRECTIONS)
-    with one_thread():
-        scores = (rows @ templates.weights.T + templates.offsets).max(axis=1)
+    scores = (rows @ templates.weights.T + templates.offsets).max(axis=1)
     best = np.argsort(-scores, kind="stable")[:_A_LEVEL]
     y, x = np.divmod(best, windows.shape[1])
     corner = np.column_stack([x, y]) * CELL_PX + (WINDOW_PX / 2 - pad - 0.5)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.geometry.one_thread import one_thread
 from toongeo.pipeline.landmarks.search.face_crop import face_crop, whole_descriptor
 from toongeo.pipeline.landmarks.search.frames import similarity_onto
 
@@ -22,5 +21,4 @@ class FaceVerifier:
     def score(self, grey: np.ndarray, points: NDArray[np.float64], shape: NDArray[np.float64]) -> float:
         """The larger, the more a face: of the picture aligned by its points (68, 2) with the mean shape."""
         row = whole_descriptor(face_crop(grey, similarity_onto(points, shape)))
-        with one_thread():
-            return float((self.weights @ row + self.offsets).max())
+        return float((self.weights @ row + self.offsets).max())

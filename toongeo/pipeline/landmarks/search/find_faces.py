@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.model.ibug68 import INNER
 from toongeo.pipeline.landmarks.search.detector_file import DetectorParts
 from toongeo.pipeline.landmarks.search.face_boxes import face_boxes
 from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX
@@ -22,6 +23,7 @@ _KEPT = 4  # boxes that the whole cascade is run on, at least
 _PLAIN = 0.5  # the sum of the first scores at which others are looked at too: there may be many faces
 # Chances of a face: the least one, and that beside a sure face. Chosen on renders and on photographs without a face.
 _FACE, _SURE, _BESIDE = 0.7, 0.9, 0.9
+_PLACED = 0.5  # the mean confidence of inner points below which it is no face: 1 % of renders have less than 0.6
 _OVERLAP = 0.7  # radii between the middles of faces that cannot both be
 _SAME = 0.15  # radii between the points of what would end as one face
 
@@ -68,7 +70,8 @@ def find_faces(grey: np.ndarray, parts: DetectorParts) -> list[FoundFace]:
         if chance >= least and not any(_overlap(candidate, other) for _, other in kept):
             kept.append((chance, candidate))
     faces = [_finished(grey, candidate, chance, parts) for chance, candidate in kept]
-    return sorted(faces, key=lambda face: -box_of(face.points)[2])
+    placed = [face for face in faces if face.confidence[INNER].mean() >= _PLACED]
+    return sorted(placed, key=lambda face: -box_of(face.points)[2])
 
 
 def candidate_faces(grey: np.ndarray, parts: DetectorParts, tilt: float = 0.0) -> list[Candidate]:

@@ -5,7 +5,6 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import INNER
@@ -38,9 +37,8 @@ def template_misfit(landmarks: NDArray[np.float64]) -> float:
         camera = scale * rotation[:2] * [[1.0], [-1.0]]
         flat = (modes @ camera.T).reshape(len(modes), -1).T / (_NOISE * radius)
         aim = (points - shift - mean @ camera.T).ravel() / (_NOISE * radius)
-        with one_thread():
-            c = np.linalg.solve(flat.T @ flat + np.eye(len(modes)), flat.T @ aim)
-            shape = mean + np.tensordot(c, modes, 1)
+        c = np.linalg.solve(flat.T @ flat + np.eye(len(modes)), flat.T @ aim)
+        shape = mean + np.tensordot(c, modes, 1)
     return float(np.sqrt(((shape @ camera.T + shift - points) ** 2).sum(axis=1).mean()) / radius) + 1e-4
 
 
