@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_image import check_image
 from toongeo.pipeline.landmarks.detect_faces import detect_faces
 from toongeo.pipeline.landmarks.landmark_track import TrackedFace
@@ -94,7 +95,8 @@ class LandmarkTracker:
         if self._grey is None or np.isnan(self._points).any():
             return None
         start = self._points if self._lost else flowed_points(self._grey, grey, self._points)
-        face = follow_face(grey, start, self._parts)
+        with one_thread():  # how BLAS splits a sum among threads would show in the last digits
+            face = follow_face(grey, start, self._parts)
         if face.chance < (_BACK if self._lost else _STILL_THERE):
             return None
         return LandmarkDetection(face.points, face.confidence, face.chance)
