@@ -26,7 +26,15 @@ from pictures import pictures, roles
 
 from tests.driving.conftest import moves_landmarks, rms
 from tests.filmed import Film, filmed
-from toongeo import LandmarkDriver, detect_faces, make_avatar, read_image, read_landmarks, track_landmarks
+from toongeo import (
+    LandmarkDriver,
+    LandmarkTracker,
+    detect_faces,
+    make_avatar,
+    read_image,
+    read_landmarks,
+    track_landmarks,
+)
 from toongeo.driving.video_driver import CAUTION
 from toongeo.metrics import landmark_error
 
@@ -54,13 +62,20 @@ def main() -> None:
             avatar = make_avatar(read_image(picture.image), read_landmarks(picture.landmarks))
             acting, still = filmed(avatar), filmed(avatar, 2.0, still=True, hidden=None)
             moving = moves_landmarks(avatar)
-            for who in (followed, looked_at_singly):
+            for who in (followed, followed_live, looked_at_singly):
                 print(row(picture.name, who, acting, still, moving), flush=True)
     print(roles("tracking", names))
 
 
 def followed(film: Film) -> np.ndarray:
     return track_landmarks(film.frames, fps=film.fps).seen
+
+
+def followed_live(film: Film) -> np.ndarray:
+    """As a camera needs it: quick passes."""
+    tracker = LandmarkTracker()
+    faces = [tracker.track(frame, k / film.fps) for k, frame in enumerate(film.frames)]
+    return np.array([np.full((68, 2), np.nan) if face.lost else face.points for face in faces])
 
 
 def looked_at_singly(film: Film) -> np.ndarray:

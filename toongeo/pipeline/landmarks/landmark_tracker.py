@@ -33,6 +33,8 @@ class LandmarkTracker:
     detector : LandmarkDetector, optional
         What finds the face: :func:`detect_faces` unless another is given. Of several faces the largest is followed,
         and after it was lost the one that is nearest to where it was.
+    thorough : bool
+        Look at each frame as carefully as :func:`detect_faces` looks at a face: about 0.1 s a frame rather than 0.04.
 
     References
     ----------
@@ -49,8 +51,9 @@ class LandmarkTracker:
     ([False, False], True)
     """
 
-    def __init__(self, detector: LandmarkDetector | None = None) -> None:
+    def __init__(self, detector: LandmarkDetector | None = None, *, thorough: bool = False) -> None:
         self._detector = detector or detect_faces
+        self._thorough = thorough
         self._parts = shipped_detector()
         self._grey: NDArray[np.uint8] | None = None
         self._points = np.full((68, 2), np.nan)
@@ -96,7 +99,7 @@ class LandmarkTracker:
             return None
         start = self._points if self._lost else flowed_points(self._grey, grey, self._points)
         with one_thread():  # how BLAS splits a sum among threads would show in the last digits
-            face = follow_face(grey, start, self._parts)
+            face = follow_face(grey, start, self._parts, thorough=self._thorough)
         if face.chance < (_BACK if self._lost else _STILL_THERE):
             return None
         return LandmarkDetection(face.points, face.confidence, face.chance)

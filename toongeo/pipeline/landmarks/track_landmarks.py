@@ -16,7 +16,7 @@ __all__ = ["track_landmarks"]
 def track_landmarks(
     frames: Iterable[NDArray[np.uint8]], *, fps: float = 30.0, detector: LandmarkDetector | None = None
 ) -> LandmarkTrack:
-    """The 68 landmarks of one face in every frame of a video; see :class:`LandmarkTracker` for how.
+    """The 68 landmarks of one face in every frame of a video; see :class:`LandmarkTracker`, made thorough, for how.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def track_landmarks(
     """
     if not (np.isfinite(fps) and fps > 0):
         raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
-    tracker = LandmarkTracker(detector)
+    tracker = LandmarkTracker(detector, thorough=True)
     faces = [tracker.track(frame, k / fps) for k, frame in enumerate(frames)]
     if not faces:
         raise ValueError("frames: expected at least one frame, got none")

@@ -19,17 +19,22 @@ _FEWEST = 12  # points that the flow must have followed for its motion to count
 _BOX_SCORE = 0.0  # a face that is followed comes from no box; this is at the margin of those that are found
 
 
-def follow_face(grey: NDArray[np.uint8], start: NDArray[np.float64], parts: DetectorParts) -> FoundFace:
+def follow_face(
+    grey: NDArray[np.uint8], start: NDArray[np.float64], parts: DetectorParts, *, thorough: bool = False
+) -> FoundFace:
     """The face near points (68, 2) px of a grey picture (h, w), and the chance that there is one.
 
-    Three passes of the cascade and one of its parts: a third of what a face costs that is found for the first time.
+    Three passes of the cascade and one of its parts or, `thorough`, all ten as of a face that is found for the first
+    time, which takes three times as long.
     """
     patch = face_patch(grey, box_of(start))
     passes = run_passes(patch.grey, applied(patch.matrix, start), parts.cascade, first_look=True)
     verified = parts.verifier.score(patch.grey, passes.points, parts.cascade.shape)
     cues = face_cues(verified, _BOX_SCORE, passes)
+    if thorough:
+        passes = run_passes(patch.grey, passes.points, parts.cascade)
     points = passes.points.copy()
-    for part in parts.cascade.parts:
+    for part in () if thorough else parts.cascade.parts:
         points[part.rows] = part.run(patch.grey, points[part.rows])
     confidence = parts.judge.point_chances(point_cues(passes, cues))
     return FoundFace(applied(inverse(patch.matrix), points), confidence, parts.judge.face_chance(cues))
