@@ -33,7 +33,9 @@ from toongeo.geometry import RegisteredMesh as RegisteredMesh
 from toongeo.geometry import deformation_transfer as deformation_transfer
 from toongeo.geometry import laplacian_align as laplacian_align
 from toongeo.geometry import nonrigid_register as nonrigid_register
+from toongeo.io import LandmarkFile as LandmarkFile
 from toongeo.io import read_image as read_image
+from toongeo.io import read_landmark_file as read_landmark_file
 from toongeo.io import read_landmarks as read_landmarks
 from toongeo.io import read_video as read_video
 from toongeo.io import write_landmarks as write_landmarks

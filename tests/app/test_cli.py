@@ -143,18 +143,32 @@ def test_the_module_runs_as_a_program():
     assert done.stdout.startswith("toongeo ")
 
 
-def test_make_takes_landmarks_of_another_scheme(tmp_path, capsys, monkeypatch):
+def test_make_takes_landmark_files_of_other_programs(tmp_path, capsys, monkeypatch):
+    """By their number of points or by name, and shares of the picture by its size."""
     import numpy as np
 
-    from toongeo.io import read_landmarks
+    from toongeo.io import read_image, read_landmarks
+    from toongeo.model.mediapipe478 import VERTICES
 
-    points = tmp_path / "inner.npy"
-    np.save(points, read_landmarks(POINTS)[17:])
-    given = {}
-    monkeypatch.setattr("toongeo.app.make.make_avatar", lambda img, points, **options: given.update(options, at=points))
-    arguments = ["make", str(PICTURE), "--landmarks", str(points), "-o", str(tmp_path / "a.ply")]
-    assert main(arguments) == 2
-    assert "expected 68 points in iBUG order, got 51" in capsys.readouterr().err
-    with pytest.raises(AttributeError):  # of the stand-in, which gives no avatar to save
-        main([*arguments, "--scheme", "ibug51"])
-    assert given["scheme"] == "ibug51" and given["at"].shape == (51, 2)
+    landmarks, img = read_landmarks(POINTS), read_image(PICTURE)
+    mesh = np.full((478, 3), 0.5)
+    mesh[VERTICES, :2] = (landmarks + 0.5) / [img.shape[1], img.shape[0]]
+    np.save(tmp_path / "mesh.npy", mesh)
+    np.save(tmp_path / "two.npy", [landmarks + 9, landmarks])
+    np.save(tmp_path / "inner.npy", landmarks[17:])
+    given = []
+    monkeypatch.setattr("toongeo.app.make.make_avatar", lambda img, points, **_: given.append(points))
+    out = ["-o", str(tmp_path / "a.ply")]
+    for name, scheme, face in (
+        ("mesh", "auto", 0),
+        ("mesh", "mediapipe478", 0),
+        ("two", "auto", 1),
+        ("inner", "auto", 0),
+    ):
+        points = str(tmp_path / f"{name}.npy")
+        with pytest.raises(AttributeError):  # of the stand-in, which gives no avatar to save
+            main(["make", str(PICTURE), "--landmarks", points, "--scheme", scheme, "--face", str(face), *out])
+        np.testing.assert_allclose(given.pop()[17:], landmarks[17:], atol=1e-9)
+        assert f"{name}.npy: NumPy, " in capsys.readouterr().out
+    assert main(["make", str(PICTURE), "--landmarks", points, "--scheme", "wflw98", *out]) == 2
+    assert "inner.npy: expected shape (98, 2) px for scheme 'wflw98'" in capsys.readouterr().err

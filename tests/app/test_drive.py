@@ -211,7 +211,7 @@ def test_a_film_drives(glb, actor, performance, tmp_path, capsys):
 
 
 def test_films_that_cannot_drive(glb, actor, tmp_path, capsys):
-    from toongeo.app.take_source import TakeSource
+    from toongeo.app.read_take import TakeSource
 
     wall, one, text = tmp_path / "wall.mp4", tmp_path / "one.mp4", tmp_path / "text.mp4"
     write_video(wall, [np.full((64, 64, 3), 90, np.uint8)] * 2, 64, 10)

@@ -75,10 +75,11 @@ def avatars(models, cartoon):
 def test_the_aligned_face_meets_the_picture_and_carries_it(avatars, cartoon, name, picture):
     avatar, (_, landmarks) = avatars(name, picture), cartoon(picture)
     assert max(avatar.report.aligned.values()) < 0.01 < max(avatar.report.coarse.values())
-    # At rest the mouth and the jaw may be elsewhere; brows, nose and eyes are not.
-    found = avatar.face.project(avatar.vertices()[avatar.face.landmark_vertices])[17:48]
+    # At rest the mouth, the jaw and the wings of the nose may be elsewhere; brows, bridge and eyes are not.
+    found = avatar.face.project(avatar.vertices()[avatar.face.landmark_vertices])
     unit = np.linalg.norm(landmarks[45] - landmarks[36])
-    assert np.linalg.norm(found - landmarks[17:48], axis=1).max() < 0.01 * unit
+    still = np.r_[17:31, 36:48]
+    assert np.linalg.norm(found[still] - landmarks[still], axis=1).max() < 0.01 * unit
     picture_of_it = avatar.render(avatar.pose, size=128)
     assert len(np.unique(picture_of_it.reshape(-1, 3), axis=0)) > 500
     assert not np.array_equal(picture_of_it, avatar.render(avatar.pose, size=128, textured=False))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from toongeo.io import check_landmarks, read_image, read_landmarks
-from toongeo.io.check_landmarks import _layout
+from toongeo.io.landmarks.frontal_layout import frontal_layout
 
 PORTRAITS = sorted((Path(__file__).parents[2] / "examples" / "portraits").glob("*.pts"))
 RNG_ORDER = np.random.default_rng(0).permutation(68)
@@ -27,7 +27,7 @@ def rolled(points, degrees):
 
 
 def exchanged(points):
-    return points[_layout().mirror]
+    return points[frontal_layout().mirror]
 
 
 def test_portraits_pass_in_their_pictures():
@@ -50,7 +50,7 @@ def test_photographs_and_strong_caricatures_pass(shared):
 
 
 def test_layout_is_the_symmetrised_mean_of_the_portraits():
-    layout = _layout()
+    layout = frontal_layout()
     np.testing.assert_array_equal(layout.points[layout.mirror] * [-1, 1], layout.points)
     np.testing.assert_array_equal(layout.mirror[layout.mirror], np.arange(68))
     shapes = [read_landmarks(path) for path in PORTRAITS]
@@ -118,9 +118,43 @@ def test_mistakes_are_seen_with_points_missing(face):
 
 @pytest.mark.parametrize("part", ["brows", "nostrils", "eyes", "outer lips", "inner lips"])
 def test_a_part_with_its_sides_exchanged_is_doubted(face, part):
-    rows = [name == part for name in _layout().parts]
+    rows = [name == part for name in frontal_layout().parts]
     face[rows] = exchanged(face)[rows]
     assert f"landmarks of the {part}: left and right seem to be exchanged" in check_landmarks(face)
+
+
+@pytest.mark.parametrize("degrees", [-40, 0, 40])
+@pytest.mark.parametrize(
+    ("first", "last"), [(17, 21), (22, 26), (27, 30), (49, 53), (48, 54), (55, 59), (61, 63), (60, 64), (65, 67)]
+)
+def test_one_row_backwards_is_named(face, first, last, degrees):
+    points = rolled(face, degrees)
+    points[first : last + 1] = points[first : last + 1][::-1]
+    named = {48: "points 49-53", 60: "points 61-63"}.get(first, f"points {first}-{last}")
+    (doubt,) = check_landmarks(points)
+    assert f"{named} run backwards" in doubt
+
+
+@pytest.mark.parametrize(
+    ("ring", "name"),
+    [((36, 41, 40, 39, 38, 37), "right eye"), ((42, 47, 46, 45, 44, 43), "left eye")]
+    + [((48, *range(59, 48, -1)), "outer lips")],
+)
+def test_a_ring_the_other_way_round_is_named(face, ring, name):
+    face[sorted(ring)] = face[list(ring)]
+    assert f"landmarks of the {name}: upper and lower points seem to be exchanged" in check_landmarks(face)
+
+
+def test_halves_exchanged_are_named(face):
+    """The blocks of the two brows and eyes, which keep their inner order, and the halves of the mouth."""
+    for part, order in {
+        "brows": [*range(22, 27), *range(17, 22)],
+        "eyes": [*range(42, 48), *range(36, 42)],
+        "outer lips": [54, 53, 52, 51, 50, 49, 48, 59, 58, 57, 56, 55],
+    }.items():
+        points = face.copy()
+        points[sorted(order)] = face[order]
+        assert f"landmarks of the {part}: left and right seem to be exchanged" in check_landmarks(points)
 
 
 def test_a_jaw_with_its_sides_exchanged_is_refused(face):
@@ -143,7 +177,7 @@ def test_places_that_are_doubted(face):
 @pytest.mark.parametrize("yaw", [-90, -75, -60, -45, -30, 0, 30, 45, 60, 75, 90])
 def test_turned_heads_are_not_refused(yaw):
     """The layout bent over a head; the misfit may raise a doubt from 45 degrees on."""
-    x, y = _layout().points.T
+    x, y = frontal_layout().points.T
     depth = np.where(np.arange(68) < 17, -0.75 * (x / x.max()) ** 2, 0.05 - 0.2 * x**2)
     depth[27:31] = 0.1, 0.15, 0.22, 0.28
     a = np.radians(yaw)

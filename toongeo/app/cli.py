@@ -12,7 +12,7 @@ from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 __all__ = ["main"]
 
 
-_SCHEME = "of the landmarks: ibug68 (default), ibug51, ibug49 or mediapipe478, all in px"
+_SCHEME = "of the landmarks, such as wflw98 (default auto: by their number)"
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -62,7 +62,7 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--author", action="append", metavar="NAME", help="for the licence of a .vrm; may be repeated")
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
     make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
-    make.add_argument("--scheme", default="ibug68", metavar="NAME", help=_SCHEME)
+    make.add_argument("--scheme", default="auto", metavar="NAME", help=_SCHEME)
     make.set_defaults(run=_make)
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
@@ -80,7 +80,7 @@ def _parser() -> argparse.ArgumentParser:
         type=Path,
         required=True,
         metavar="FILE",
-        help=".json: 68 entries in iBUG order, each a vertex (0-based), [x, y, z], or null",
+        help=".json: 68 entries in iBUG order, each a vertex (0-based), [x, y, z], or null; or .ljson .pp .txt .csv",
     )
     rig.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".glb, in the mesh's own frame")
     rig.add_argument("--texture", type=Path, metavar="IMAGE", help="picture for the mesh's texture coordinates")
@@ -91,9 +91,10 @@ def _parser() -> argparse.ArgumentParser:
 
 def _add_landmarks(command: argparse.ArgumentParser) -> None:
     """Where the 68 points of a picture come from."""
-    source = command.add_mutually_exclusive_group()
-    source.add_argument("--landmarks", type=Path, metavar="FILE", help=".pts, .npy, .csv or .txt; found if not given")
-    source.add_argument("--face", type=int, default=0, metavar="N", help="which face to find (default 0, the largest)")
+    files = ".pts .npy .csv .txt .json .ljson .xml; found if not given"
+    command.add_argument("--landmarks", type=Path, metavar="FILE", help=files)
+    which = "which face, in the file or, by size, in the picture (default 0)"
+    command.add_argument("--face", type=int, default=0, metavar="N", help=which)
     command.add_argument("--accept", action="store_true", help="go on with landmarks that were found but are not sure")
 
 
@@ -102,14 +103,14 @@ def _add_drive(commands: Any) -> None:
     drive.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
     source = drive.add_mutually_exclusive_group(required=True)
     source.add_argument("--weights", type=Path, metavar="TAKE", help="Live Link Face .csv, or .npy (frames, 52 or 54)")
-    source.add_argument("--landmarks", type=Path, metavar="TAKE", help=".npy (frames, 68, 2) px, the first neutral")
+    source.add_argument("--landmarks", type=Path, metavar="TAKE", help=".npy .csv .json .xml, the first frame neutral")
     source.add_argument("--video", type=Path, metavar="FILM", help="of an actor whose face is followed: .mp4, .mov ...")
     drive.add_argument(
         "-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4, .glb, or .csv of Live Link Face"
     )
     drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
     drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
-    drive.add_argument("--scheme", default="ibug68", metavar="NAME", help=_SCHEME)
+    drive.add_argument("--scheme", default="auto", metavar="NAME", help=_SCHEME)
     drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
     drive.set_defaults(run=_drive)
 
@@ -174,7 +175,7 @@ def _demo(options: argparse.Namespace) -> None:
 
 def _drive(options: argparse.Namespace) -> None:
     from toongeo.app.drive import drive
-    from toongeo.app.take_source import TakeSource
+    from toongeo.app.read_take import TakeSource
 
     source = TakeSource(options.weights, options.landmarks, options.video, options.take_fps, options.scheme)
     drive(options.avatar, options.output, source, size=options.size, fps=options.fps)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from toongeo.app.check_output import check_output
-from toongeo.app.take_source import TakeSource
+from toongeo.app.read_take import TakeSource
 from toongeo.app.write_video import write_video
 from toongeo.avatar.load_avatar import load_avatar
 from toongeo.driving import write_live_link

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
-from toongeo.io import read_landmarks
+from toongeo.io import LandmarkFile, read_landmark_file
 from toongeo.model.ibug68 import INNER
 from toongeo.pipeline import detect_landmarks
 from toongeo.protocols import LandmarkDetection
@@ -17,15 +17,20 @@ __all__ = ["LandmarkSource"]
 
 @dataclass(frozen=True)
 class LandmarkSource:
-    """A file of landmarks of a scheme or, without one, which face to find; `accept` takes points that are not sure."""
+    """A file of landmarks and their scheme or, without one, what to find; `accept` takes points that are not sure.
+
+    `face` is which of several, in the file or, by size, in the picture.
+    """
 
     file: Path | None = None
-    scheme: str = "ibug68"
+    scheme: str = "auto"
     face: int = 0
     accept: bool = False
 
-    def landmarks(self, image: Path, img: NDArray[np.uint8]) -> tuple[NDArray[np.float64], LandmarkDetection | None]:
-        """Landmarks (k, 2) px of the picture, and how they were found if they were.
+    def landmarks(
+        self, image: Path, img: NDArray[np.uint8]
+    ) -> tuple[NDArray[np.float64], LandmarkFile | LandmarkDetection]:
+        """Landmarks (68, 2) px of the picture, and how they were read or found.
 
         Raises
         ------
@@ -35,8 +40,9 @@ class LandmarkSource:
             If the file cannot be read, or there is no such face.
         """
         if self.file is not None:
-            return read_landmarks(self.file, scheme=self.scheme), None
-        if self.scheme != "ibug68":
+            read = read_landmark_file(self.file, scheme=self.scheme, face=self.face, size=img)
+            return read.points, read
+        if self.scheme != "auto":
             raise ValueError(f"scheme: expected --landmarks FILE with --scheme, got {self.scheme!r} alone")
         found = detect_landmarks(img, face=self.face)
         if not (found.is_sure or self.accept):

@@ -12,7 +12,7 @@ from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.avatar.save_avatar import writer_for
-from toongeo.io import read_image
+from toongeo.io import LandmarkFile, read_image
 from toongeo.model.ibug68 import INNER
 
 __all__ = ["make"]
@@ -48,7 +48,9 @@ def make(
     check_output(output, {"image": image, "landmarks": source.file}, format)
     img = read_image(image)
     points, found = source.landmarks(image, img)
-    if found is not None:
+    if isinstance(found, LandmarkFile):
+        print(found.message)
+    else:
         trust = 100 * found.confidence[INNER].mean()
         print(f"landmarks found: face {100 * found.score:.0f} %, points {trust:.0f} % sure")
     with tqdm(total=len(STAGES), unit="stage", bar_format="{desc:<12}{bar:24} {n_fmt}/{total_fmt} {elapsed}") as bar:
@@ -58,13 +60,7 @@ def make(
             bar.set_description(stage)
 
         avatar = make_avatar(
-            img,
-            points,
-            snap=snap,
-            photometric=photometric,
-            texture_size=texture_size,
-            scheme=source.scheme,
-            progress=announce,
+            img, points, snap=snap, photometric=photometric, texture_size=texture_size, progress=announce
         )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")

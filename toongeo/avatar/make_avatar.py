@@ -96,7 +96,7 @@ def make_avatar(
         from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
     texture_size : int
         Side of the texture atlas in texels.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}, or a table
+    scheme : str, or a table
         What the landmarks are: see :func:`toongeo.ibug_landmarks`. With a table of points on the model (as of
         :class:`toongeo.FitOptions`) the face is fitted to these, and then stands for its 68 landmarks.
     progress : callable, optional

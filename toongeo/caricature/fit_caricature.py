@@ -79,7 +79,7 @@ def fit_caricature(
         space does not explain. The same landmarks give nearly the same face, and with one iteration a new expression
         takes a third of a second. Of an ordinary face: begin with this one instead of the `fit_3dmm` of the landmarks.
     options : CaricatureOptions, optional
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

@@ -40,7 +40,7 @@ class LandmarkDriver:
     performer : Avatar, LandmarkRig, (68, 2) px landmarks of a neutral frame, or None
         Whose landmarks will be seen. The better it is known, the better the weights: an avatar of the performer knows
         most; of a neutral frame a face is fitted; with None a neutral frame is found in the sequence itself.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What all landmarks are: see :func:`toongeo.ibug_landmarks`.
     caution : float
         How much more noise the weights assume than the landmarks show: quiet weights are worth a little bias. Points

@@ -18,7 +18,7 @@ def landmark_frames(recording: Any, name: str = "recording", scheme: str = "ibug
     Raises
     ------
     ValueError
-        If they are not numbers, have another shape, or hold infinities; NaN means missing.
+        If they are not numbers, have another shape, or hold infinities; NaN, or what a masked array hides, is missing.
 
     Examples
     --------
@@ -26,7 +26,7 @@ def landmark_frames(recording: Any, name: str = "recording", scheme: str = "ibug
     (1, 68, 2)
     """
     try:
-        frames = np.array(recording, np.float64)
+        frames = np.array(np.ma.filled(np.ma.asanyarray(recording, np.float64), np.nan))
     except (TypeError, ValueError):
         raise ValueError(f"{name}: expected numbers (frames, 68, 2), got {type(recording).__name__}") from None
     if frames.ndim == 2:

@@ -7,10 +7,15 @@ from toongeo.io.encode_glb import encode_glb as encode_glb
 from toongeo.io.encode_image import encode_image as encode_image
 from toongeo.io.glb_scene import glb_scene as glb_scene
 from toongeo.io.landmark_array import landmark_array as landmark_array
+from toongeo.io.landmarks.landmark_schemes import SCHEMES as SCHEMES
+from toongeo.io.landmarks.landmark_schemes import ibug_points as ibug_points
 from toongeo.io.page_html import page_html as page_html
 from toongeo.io.readers.read_glb import GlbDocument as GlbDocument
 from toongeo.io.readers.read_glb import read_glb as read_glb
 from toongeo.io.readers.read_image import read_image as read_image
+from toongeo.io.readers.read_landmark_file import LandmarkFile as LandmarkFile
+from toongeo.io.readers.read_landmark_file import read_landmark_file as read_landmark_file
+from toongeo.io.readers.read_landmark_frames import read_landmark_frames as read_landmark_frames
 from toongeo.io.readers.read_landmarks import read_landmarks as read_landmarks
 from toongeo.io.readers.read_mesh import MESH_SUFFIXES as MESH_SUFFIXES
 from toongeo.io.readers.read_mesh import read_mesh as read_mesh

@@ -1,15 +1,13 @@
 """What people get wrong in landmarks, said before a fit goes astray."""
 
-import csv
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.io.landmark_array import landmark_array
+from toongeo.io.landmarks.frontal_layout import frontal_layout, frontal_pose
+from toongeo.io.landmarks.order_doubts import order_doubts
 
 __all__ = ["check_landmarks"]
 
@@ -37,13 +35,6 @@ _REFLECTIONS = (
     ([[0, 1], [1, 0]], "the columns are (y, x); expected (x, y)"),
     ([[0, -1], [-1, 0]], "the columns are (y, x) and run backwards; expected (x, y) with y down"),
 )
-
-
-@dataclass(frozen=True, eq=False)
-class _Layout:
-    points: NDArray[np.float64]  # (68, 2) frontal face, x right, y down
-    mirror: NDArray[np.int64]  # (68,)
-    parts: tuple[str, ...]  # 68 names
 
 
 def check_landmarks(landmarks: ArrayLike, image_shape: Sequence[int] | None = None) -> list[str]:
@@ -91,7 +82,7 @@ def check_landmarks(landmarks: ArrayLike, image_shape: Sequence[int] | None = No
             "landmarks: expected a face in pixels (not fractions of the picture's size), but the points span "
             f"{spread[0]:.3g} x {spread[1]:.3g} px"
         )
-    pose, misfit, mirrored_misfit = _pose(points[usable], _layout().points[usable])
+    pose, misfit, mirrored_misfit = frontal_pose(points[usable], frontal_layout().points[usable])
     if mirrored_misfit < min(misfit - _HANDEDNESS_MARGIN, _MISFIT_REFUSED):
         raise ValueError(f"landmarks: {_reflection(pose)}")
     warnings = [] if image_shape is None else _outside(points, usable, image_shape)
@@ -106,38 +97,10 @@ def check_landmarks(landmarks: ArrayLike, image_shape: Sequence[int] | None = No
     return warnings + _doubts(points, usable, pose)
 
 
-@cache
-def _layout() -> _Layout:
-    text = files("toongeo.io").joinpath("landmark_layout.csv").read_text(encoding="utf-8")
-    rows = list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
-    return _Layout(
-        points=np.array([(float(row["x"]), float(row["y"])) for row in rows]),
-        mirror=np.array([int(row["mirror"]) for row in rows]),
-        parts=tuple(row["part"] for row in rows),
-    )
-
-
 def _refuse_flat(points: NDArray[np.float64]) -> None:
     singular = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     if singular[1] < _FLATNESS * singular[0]:
         raise ValueError("landmarks: expected a face, but all points lie on one line")
-
-
-def _pose(points: NDArray[np.float64], layout: NDArray[np.float64]) -> tuple[NDArray[np.float64], float, float]:
-    """Best orthogonal map layout -> points (either handedness), and the misfits of the best rotation and
-    reflection.
-
-    Orthogonal Procrustes: for unit-norm centred shapes the best rotation explains the share (s1 +- s2)^2 of
-    the spread, where s are the singular values of the 2x2 covariance and the sign is that of its
-    determinant.
-    """
-    points = points - points.mean(axis=0)
-    layout = layout - layout.mean(axis=0)
-    covariance = points.T @ layout / (np.linalg.norm(points) * np.linalg.norm(layout))
-    u, (s1, s2), vt = np.linalg.svd(covariance)
-    sign = 1.0 if np.linalg.det(u @ vt) > 0 else -1.0
-    misfit, mirrored = (float(np.sqrt(max(0.0, 1 - (s1 + k * s2) ** 2))) for k in (sign, -sign))
-    return u @ vt, misfit, mirrored
 
 
 def _reflection(pose: NDArray[np.float64]) -> str:
@@ -180,11 +143,4 @@ def _doubts(points: NDArray[np.float64], usable: NDArray[np.int64], pose: NDArra
     roll = np.degrees(np.arctan2(pose[1, 0], pose[0, 0]))
     if abs(roll) > _ROLL_DOUBTED:
         doubts.append(f"the face is turned by {roll:.0f} degrees in the picture: are both axes as expected?")
-    layout = _layout()
-    # Towards the subject's left, along the face's own x axis: negative in a part whose sides are exchanged.
-    sideways = np.sign(layout.points[:, 0]) * ((points - points[layout.mirror]) @ pose[:, 0])
-    for part in dict.fromkeys(layout.parts):
-        across = sideways[[name == part for name in layout.parts]]
-        if np.nansum(across) < 0:
-            doubts.append(f"landmarks of the {part}: left and right seem to be exchanged")
-    return doubts
+    return doubts + order_doubts(points, pose)

@@ -12,7 +12,7 @@ def point_array(points: ArrayLike, name: str = "landmarks", expected: str = "row
     Parameters
     ----------
     points
-        Numbers: no text, no truth values, no complex ones.
+        Numbers: no text, no truth values, no complex ones. What a masked array hides is NaN.
     name, expected
         Of the argument, and what it should hold, for the message.
 
@@ -34,4 +34,7 @@ def point_array(points: ArrayLike, name: str = "landmarks", expected: str = "row
         raise ValueError(f"{name}: expected {expected}, got rows of different lengths") from None
     if array.dtype.kind not in "iuf":
         raise ValueError(f"{name}: expected numbers, got an array of {array.dtype}")
-    return np.array(array, np.float64)
+    copy = np.array(array, np.float64)
+    if isinstance(points, np.ma.MaskedArray):
+        copy[np.ma.getmaskarray(points)] = np.nan
+    return copy

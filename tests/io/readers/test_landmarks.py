@@ -5,7 +5,7 @@ import pytest
 
 from toongeo.io import read_landmarks, write_landmarks
 
-SUFFIXES = [".pts", ".npy", ".csv", ".txt"]
+SUFFIXES = [".pts", ".npy", ".csv", ".txt", ".json", ".ljson"]
 
 
 @pytest.fixture
@@ -72,12 +72,6 @@ def test_integers_in_npy(tmp_path):
     ("count", "hint"),
     [
         (5, "mouth corners"),
-        (49, "without 60 and 64"),
-        (51, "NaN in rows 0-16"),
-        (98, "WFLW"),
-        (106, "JD"),
-        (468, "MediaPipe"),
-        (478, "irises"),
         (67, ""),
     ],
 )
@@ -91,22 +85,25 @@ def test_wrong_count_names_the_scheme(tmp_path, count, hint):
 @pytest.mark.parametrize(
     ("array", "message"),
     [
-        (np.zeros((68, 3)), r"expected shape \(68, 2\), got \(68, 3\)"),
-        (np.zeros(136), r"expected shape \(68, 2\), got \(136,\)"),
-        (np.zeros((1, 68, 2)), r"got \(1, 68, 2\)"),
+        (np.zeros((68, 4)), r"\(68, 4\)"),
+        (np.zeros(136), r"expected shape \(68, 2\),.* got \(136,\)"),
+        (np.zeros((1, 1, 1, 68, 2)), r"got \(1, 1, 1, 68, 2\)"),
         (np.full((68, 2), np.nan), "all rows are NaN"),
         (np.full((68, 2), np.inf), "infinity in row 0"),
         (np.full((68, 2), [1, np.nan]), "row 0 in one only"),
         (np.full((68, 2), "a"), "expected numbers|array of numbers"),
         (np.full((68, 2), 1j), "expected numbers|array of numbers"),
+        (np.ones((68, 2), bool), "expected numbers|array of numbers"),
+        (np.empty((0, 2)), "got 0|got \\(0, 2\\)"),
     ],
 )
 def test_wrong_arrays(tmp_path, array, message):
     with pytest.raises(ValueError, match=message):
         write_landmarks(tmp_path / "out.pts", array)
     np.save(tmp_path / "a.npy", array)
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(ValueError, match=message) as info:
         read_landmarks(tmp_path / "a.npy")
+    assert "a.npy" in str(info.value)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.npy"]
 
 
@@ -117,11 +114,11 @@ def test_wrong_arrays(tmp_path, array, message):
         ("a.pts", b"version: 1\nn_points: 68\n{\n1 2\n}\n", "announces n_points: 68, but holds 1"),
         ("a.txt", b"1 2\n" * 5 + b"1 2 3\n" + b"1 2\n" * 62, "two numbers, got '1 2 3' in line 6"),
         ("a.txt", b"1 2\n" * 67 + b"1 x\n", "two numbers, got '1 x' in line 68"),
-        ("a.csv", b"", "got 0"),
-        ("a.csv", b"\xff\xfe\x00\x01", "expected text"),
+        ("a.csv", b"", "there are none in"),
+        ("a.csv", b"\xff\xff\x00\x01", "expected text"),
         ("a.npy", b"", "expected an .npy array"),
         ("a.npy", b"1 2\n" * 68, "expected an .npy array"),
-        ("a.dat", b"1 2\n" * 68, "expected .pts, .npy, .csv or .txt"),
+        ("a.dat", b"1 2\n" * 68, "expected .pts, .txt, .csv, .npy, .json, .ljson or .xml, got "),
     ],
 )
 def test_wrong_files(tmp_path, name, content, message):
@@ -139,8 +136,8 @@ def test_pickle_is_refused(tmp_path):
 
 
 def test_unknown_suffix_and_places(tmp_path, landmarks):
-    with pytest.raises(ValueError, match="expected .pts, .npy, .csv or .txt, got .*a.json"):
-        write_landmarks(tmp_path / "a.json", landmarks)
+    with pytest.raises(ValueError, match="expected .pts, .npy, .csv, .txt, .json or .ljson, got .*a.xml"):
+        write_landmarks(tmp_path / "a.xml", landmarks)
     with pytest.raises(FileNotFoundError, match="none.pts"):
         read_landmarks(tmp_path / "none.pts")
     with pytest.raises(OSError, match="cannot write .*nowhere/a.pts"):

@@ -48,7 +48,7 @@ def test_a_face_mesh_is_its_68_points(case, name):
 @pytest.mark.parametrize("name", functions(None, None, None))
 def test_another_number_of_points_is_refused_by_name(case, name):
     img, landmarks, _, fit, parse = case
-    with pytest.raises(ValueError, match=r"landmarks: expected shape \(51, 2\) for scheme 'ibug51', got \(68, 2\)"):
+    with pytest.raises(ValueError, match=r"landmarks: expected shape \(51, 2\) px for scheme 'ibug51', got \(68, 2\)"):
         functions(img, fit, parse)[name](landmarks, scheme="ibug51")
 
 

@@ -9,7 +9,7 @@ from toongeo.pipeline import align_face, bake_texture, fit_3dmm, parse_face
 from toongeo.pipeline.texture.bake_texture import _atlas_fragments
 from toongeo.protocols import FaceLabel, FaceParse
 
-SIZE = 256  # texels a side of the atlas
+SIZE = 512
 TWO_PERCENT = 0.02 * 255
 MAGENTA, GREEN = (255, 0, 255), (0, 255, 0)
 

@@ -63,7 +63,7 @@ def caricature_rig(
     weights : BlendshapeWeights, optional
         Of the optimization. If None, its defaults with masks that hold still only what hardly moves in the normal
         face.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

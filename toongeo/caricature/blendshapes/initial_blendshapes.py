@@ -83,7 +83,7 @@ def initial_blendshapes(
         NaN rows are missing.
     mapper : LandmarkMapper, optional
         `PartMapper` of the source's model if None.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

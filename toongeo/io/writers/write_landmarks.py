@@ -1,16 +1,19 @@
 """Landmarks into a file."""
 
 import io
+import json
 import os
 from decimal import Decimal
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.landmark_array import landmark_array
-from toongeo.io.readers.read_landmarks import EXACT
+from toongeo.io.landmarks.frontal_layout import frontal_layout
+from toongeo.io.readers.landmarks.number_words import EXACT
 
 __all__ = ["write_landmarks"]
 
@@ -21,7 +24,8 @@ def write_landmarks(path: str | os.PathLike[str], landmarks: ArrayLike) -> None:
     Parameters
     ----------
     path
-        ``.pts`` (1 is added, as iBUG has it), ``.npy``, ``.csv`` (with a heading ``x,y``) or ``.txt``;
+        ``.pts`` (1 is added, as iBUG has it), ``.npy``, ``.csv`` (with a heading ``x,y``), ``.txt``, ``.json``
+        (``{"landmarks": [[x, y], ...]}``, null for a missing point) or ``.ljson`` (version 2 of landmarker.io, (y, x));
         atomic.
     landmarks
         (68, 2) px, 0-based; NaN rows are missing points.
@@ -45,8 +49,12 @@ def write_landmarks(path: str | os.PathLike[str], landmarks: ArrayLike) -> None:
         content = f"x,y\n{_lines(points, ',', 0)}\n".encode()
     elif suffix == ".txt":
         content = f"{_lines(points, ' ', 0)}\n".encode()
+    elif suffix == ".json":
+        content = _json({"landmarks": [None if x != x else [x, y] for x, y in points.tolist()]})
+    elif suffix == ".ljson":
+        content = _json(_ljson(points))
     else:
-        raise ValueError(f"path: expected .pts, .npy, .csv or .txt, got {path}")
+        raise ValueError(f"path: expected .pts, .npy, .csv, .txt, .json or .ljson, got {path}")
     atomic_write({path: content})
 
 
@@ -57,3 +65,15 @@ def _lines(points: NDArray[np.float64], separator: str, shift: int) -> str:
 def _text(value: float, shift: int) -> str:
     """Shortest decimal that names this float, moved by ``shift`` without rounding."""
     return str(EXACT.add(Decimal(repr(value)), shift)).lower() if shift else repr(value)
+
+
+def _json(document: dict[str, Any]) -> bytes:
+    return f"{json.dumps(document, allow_nan=False)}\n".encode()
+
+
+def _ljson(points: NDArray[np.float64]) -> dict[str, Any]:
+    """Points of pictures stand as (y, x) there; a label masks the points of a part."""
+    rows = [[None, None] if x != x else [y, x] for x, y in points.tolist()]
+    parts = np.array(frontal_layout().parts)
+    labels = [{"label": part, "mask": np.flatnonzero(parts == part).tolist()} for part in dict.fromkeys(parts.tolist())]
+    return {"version": 2, "labels": labels, "landmarks": {"points": rows, "connectivity": []}}

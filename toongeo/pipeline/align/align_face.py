@@ -129,7 +129,7 @@ def align_face(
         ``landmark_vertices`` of the result tell where they ended.
     flow : bool
         False: _Laplacian deformation alone, as in the paper, which folds lids and lips of strong exaggerations.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

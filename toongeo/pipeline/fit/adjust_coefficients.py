@@ -86,7 +86,7 @@ def adjust_coefficients(
     algorithm : str
         Of nlopt, by name.
     max_evaluations : int
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from toongeo.io import SCHEMES
 from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS
 from toongeo.pipeline.fit.check_positive import check_positive
 from toongeo.pipeline.fit.fit_option_groups import JawOptions, PriorOptions, SolverOptions
-from toongeo.pipeline.fit.ibug_landmarks import SCHEMES
 from toongeo.pipeline.fit.landmarks.robust_weights import KERNELS
 
 __all__ = ["FitOptions", "changed_options"]
@@ -44,7 +44,7 @@ class FitOptions:
         5 m away. Landmarks tell it badly, so give it where it is known.
     principal_point : (x, y) px or None
         Of the perspective camera; None: the middle of the picture, or of the face when there is no picture.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}, (k,) int array, or a pair (faces (k,), weights (k, 3))
+    scheme : str, (k,) int array, or a pair (faces (k,), weights (k, 3))
         What the landmarks are: a known scheme, vertices of the model, or points in its triangles. With a table
         all points count alike, none slides along the jaw, and the 68 vertices of the result are the model's own.
     adjust : {"expression", "identity+expression"} or None

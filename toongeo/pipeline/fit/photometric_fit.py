@@ -57,7 +57,7 @@ def photometric_fit(
     options : PhotometricOptions, optional
     fit_options : FitOptions, optional
         Those that ``fit`` was made with.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

@@ -34,7 +34,7 @@ def parse_face(
         The face as `fit_3dmm` found it; it is fitted to the landmarks if None.
     parser : FaceParser, optional
         Anything that is called as this function is, a network say; `ClassicalParser` if None.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

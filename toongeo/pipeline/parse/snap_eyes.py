@@ -49,7 +49,7 @@ def snap_eyes(landmarks: ArrayLike, parse: FaceParse, *, mode: _Mode = "arc", sc
         lid then land on its middle. ``"arc"`` finds the corners of the segmented eye first, and gives each point the
         place on the upper or lower boundary, by arc length, that it had on its lid. An eye with missing points is
         snapped by ``"nearest"``.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

@@ -65,7 +65,7 @@ def find_irises(img: np.ndarray, landmarks: np.ndarray, *, scheme: str = "ibug68
     img : (H, W, 3) uint8 RGB
     landmarks : (68, 2) float, px
         Rows of an eye that are NaN give no iris.
-    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+    scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns

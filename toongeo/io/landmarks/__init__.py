@@ -1,0 +1,1 @@
+"""What the 68 landmarks are: their frontal layout, their order, and other schemes."""

@@ -1,0 +1,1 @@
+"""Readers of landmark files, a format a file."""
