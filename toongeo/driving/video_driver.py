@@ -31,7 +31,8 @@ class VideoDriver:
     Parameters
     ----------
     performer : Avatar, LandmarkRig, (68, 2) px landmarks of a neutral frame, or None
-        As of :class:`LandmarkDriver`; with None a neutral frame is found in the film itself.
+        As of :class:`LandmarkDriver`; with None a neutral frame is found in the film itself, so the performer should
+        look into the camera without expression for a moment.
     detector : LandmarkDetector, optional
         What finds the face; :func:`toongeo.detect_faces` unless another is given.
 
