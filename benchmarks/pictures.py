@@ -31,6 +31,7 @@ CHOSEN_ON = {
     "detection": ("astronaut",),  # that a face beside a sure one must be as sure; the rest saw renders only
     "driving": EXAMPLES,
     "editing": EXAMPLES,
+    "editor": EXAMPLES,  # the one constant of the placing
     "eos": (*EXAMPLES, *PORTRAITS),  # the weight of the prior; in this comparison eos sets it
     "files": EXAMPLES,
     "landmarks": (*EXAMPLES, *PORTRAITS),

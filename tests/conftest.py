@@ -98,10 +98,10 @@ def once(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def avatars(once, cartoon):
-    """``avatars(name)`` -> `make_avatar` of a bundled picture."""
+    """``avatars(name)`` -> `make_avatar` of a bundled picture, with hair painted on the head."""
     from toongeo import make_avatar
 
-    return lambda name: once(f"avatar-{name}", lambda: make_avatar(*cartoon(name)))
+    return lambda name: once(f"avatar-{name}", lambda: make_avatar(*cartoon(name), hair=False))
 
 
 @pytest.fixture(scope="session")

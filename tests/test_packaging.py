@@ -54,7 +54,9 @@ def test_a_wheel_carries_its_data(pip, tmp_path):
     assert {"toongeo/io/landmark_layout.csv", "toongeo/io/humanoid_bones.csv"} < set(names)
     tables = [path.name for kind in ("csv", "npz", "md") for path in (ROOT / "data_templates").glob(f"*.{kind}")]
     assert {f"toongeo/data_templates/{name}" for name in tables} <= set(names)
-    assert {f"toongeo/io/page/{name}" for name in ("viewer.js", "page.html", "page.css")} < set(names)
+    pages = ("viewer.js", "page.html", "page.css", "editor.js", "editor.html", "editor.css")
+    assert {f"toongeo/io/page/{name}" for name in pages} < set(names)
+    assert {f"toongeo/app/editor/{name}" for name in ("clicks.csv", "contours.csv")} < set(names)
     assert not [name for name in names if "node_modules" in name]
     assert not [name for name in names if "/build/" in name or name.startswith("tests")]
     found = run(

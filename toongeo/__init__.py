@@ -10,10 +10,11 @@ The stages, in the order in which :func:`make_avatar` calls them:
    that meet and do not cross, teeth that stay behind them.
 6. :func:`fit_lids` (by :func:`fit_eyes`, :func:`close_lids`, :func:`keep_lids_outside` ...) - eyeballs and lids in
    contact.
-7. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
-8. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .vrm, .usdz, .html, .obj, .ply);
+7. :func:`make_room`, :func:`build_hair` - a skull inside the outline of its hair, and the hair as a closed shell.
+8. :func:`bake_texture` (with :func:`diffuse_texture`), :func:`bake_eyes` - the picture on the UV atlas.
+9. :class:`Avatar` - vertices for any weights, pictures, and files (.glb, .vrm, .usdz, .html, .obj, .ply);
    :func:`load_avatar` reads a .glb back.
-9. :class:`LandmarkDriver`, :class:`ArkitDriver` - weights of another face's performance, for any avatar.
+10. :class:`LandmarkDriver`, :class:`ArkitDriver` - weights of another face's performance, for any avatar.
 
 A head that was modelled elsewhere gets the expressions from :func:`rig_mesh` (by :func:`nonrigid_register`).
 For faces that no morphable model reaches, :func:`fit_caricature` does the work of 2 and 3 in a deformation space, and

@@ -1,5 +1,6 @@
 """The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
+from toongeo.app.editor.landmark_editor import LandmarkEditor as LandmarkEditor
 from toongeo.avatar import Avatar as Avatar
 from toongeo.avatar import load_avatar as load_avatar
 from toongeo.avatar import make_avatar as make_avatar
@@ -53,6 +54,7 @@ from toongeo.pipeline import ClassicalParser as ClassicalParser
 from toongeo.pipeline import Eyes as Eyes
 from toongeo.pipeline import FaceFit as FaceFit
 from toongeo.pipeline import FitOptions as FitOptions
+from toongeo.pipeline import Hair as Hair
 from toongeo.pipeline import JawOptions as JawOptions
 from toongeo.pipeline import LandmarkTrack as LandmarkTrack
 from toongeo.pipeline import LandmarkTracker as LandmarkTracker
@@ -65,11 +67,13 @@ from toongeo.pipeline import adjust_coefficients as adjust_coefficients
 from toongeo.pipeline import align_face as align_face
 from toongeo.pipeline import bake_eyes as bake_eyes
 from toongeo.pipeline import bake_texture as bake_texture
+from toongeo.pipeline import build_hair as build_hair
 from toongeo.pipeline import build_rig as build_rig
 from toongeo.pipeline import close_lids as close_lids
 from toongeo.pipeline import detect_faces as detect_faces
 from toongeo.pipeline import detect_landmarks as detect_landmarks
 from toongeo.pipeline import diffuse_texture as diffuse_texture
+from toongeo.pipeline import find_hair as find_hair
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_3dmm_together as fit_3dmm_together
 from toongeo.pipeline import fit_eyes as fit_eyes
@@ -77,6 +81,7 @@ from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.pipeline import fit_mouth as fit_mouth
 from toongeo.pipeline import ibug_landmarks as ibug_landmarks
 from toongeo.pipeline import keep_lids_outside as keep_lids_outside
+from toongeo.pipeline import make_room as make_room
 from toongeo.pipeline import neutral_face as neutral_face
 from toongeo.pipeline import parse_face as parse_face
 from toongeo.pipeline import photometric_fit as photometric_fit
@@ -91,6 +96,9 @@ from toongeo.protocols import Coefficients as Coefficients
 from toongeo.protocols import ExpressionDriver as ExpressionDriver
 from toongeo.protocols import FaceLabel as FaceLabel
 from toongeo.protocols import FaceParse as FaceParse
+from toongeo.protocols import HairFinder as HairFinder
+from toongeo.protocols import HairMask as HairMask
+from toongeo.protocols import HairModeler as HairModeler
 from toongeo.protocols import LandmarkDetection as LandmarkDetection
 from toongeo.protocols import LandmarkDetector as LandmarkDetector
 from toongeo.protocols import LandmarkMapper as LandmarkMapper

@@ -187,7 +187,53 @@ class FaceLabel(IntEnum):
     HAIR = 10
     EARS = 11
     NECK = 12
-    OTHER = 13  # glasses, hats, hands, black outlines
+    OTHER = 13  # glasses, hands, beards, black outlines
+    HAT = 14  # caps, hoods, helmets, scarves about the head
+
+
+@dataclass(frozen=True, eq=False)
+class HairMask:
+    """The hair of one head in a picture.
+
+    Attributes
+    ----------
+    mask : (H, W) bool
+        Pixels of hair: of the head's hair alone, without brows, beard and hat.
+    trusted : bool
+        Whether it is good enough to build hair from; otherwise hair stays painted on the head.
+    reasons : tuple of str
+        Why it is not trusted, a short sentence each; empty if it is.
+    alpha : (H, W) float32 in [0, 1], optional
+        How far each pixel is covered by hair: soft where strands mix with what is behind them.
+    hat : (H, W) bool, optional
+        Pixels of a hat; None or all False where there is none. No pixel is hair and hat.
+    """
+
+    mask: np.ndarray
+    trusted: bool
+    reasons: tuple[str, ...] = ()
+    alpha: np.ndarray | None = None
+    hat: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        mask = np.array(self.mask)
+        if mask.ndim != 2 or mask.dtype != np.bool_:
+            raise ValueError(f"mask: expected (H, W) bool, got {mask.dtype} of shape {mask.shape}")
+        if self.trusted == bool(self.reasons):
+            raise ValueError(f"reasons: expected some exactly if not trusted, got {self.reasons}")
+        fields: dict[str, np.ndarray | None] = {"mask": mask, "alpha": None, "hat": None}
+        if self.alpha is not None:
+            fields["alpha"] = alpha = np.array(self.alpha, np.float32)
+            if alpha.shape != mask.shape or not ((alpha >= 0) & (alpha <= 1)).all():
+                raise ValueError(f"alpha: expected numbers in [0, 1] of shape {mask.shape}, got shape {alpha.shape}")
+        if self.hat is not None:
+            fields["hat"] = hat = np.array(self.hat)
+            if hat.shape != mask.shape or hat.dtype != np.bool_ or (hat & mask).any():
+                raise ValueError(f"hat: expected bool of shape {mask.shape} apart from the hair, got {hat.shape}")
+        for name, array in fields.items():
+            if array is not None:
+                array.setflags(write=False)
+            object.__setattr__(self, name, array)
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,10 +246,13 @@ class FaceParse:
         A :class:`FaceLabel` a pixel.
     confidence : (H, W) float in [0, 1]
         How far each label is to be believed.
+    hair : HairMask, optional
+        The hair that the labels follow, and whether it is to be trusted.
     """
 
     labels: np.ndarray
     confidence: np.ndarray
+    hair: HairMask | None = None
 
     def __post_init__(self) -> None:
         labels, confidence = np.array(self.labels), np.array(self.confidence, np.float32)
@@ -216,6 +265,8 @@ class FaceParse:
             raise ValueError(f"confidence: expected the shape of labels {labels.shape}, got {confidence.shape}")
         if not ((confidence >= 0) & (confidence <= 1)).all():
             raise ValueError("confidence: expected numbers in [0, 1], got others or NaN")
+        if self.hair is not None and self.hair.mask.shape != labels.shape:
+            raise ValueError(f"hair: expected the shape of labels {labels.shape}, got {self.hair.mask.shape}")
         for name, array in (("labels", labels), ("confidence", confidence)):
             array.setflags(write=False)
             object.__setattr__(self, name, array)
@@ -230,6 +281,29 @@ class FaceParser(Protocol):
 
     def __call__(self, img: np.ndarray, landmarks: np.ndarray, fit: "FittedFace | None" = None) -> FaceParse:
         """Labels of the picture (H, W, 3) uint8 with landmarks (68, 2) px, NaN where missing, and its fitted face."""
+        ...
+
+
+class HairFinder(Protocol):
+    """Finds the hair in a picture; a network, say, or :func:`toongeo.find_hair`."""
+
+    def __call__(self, img: np.ndarray, landmarks: np.ndarray, fit: "FittedFace") -> HairMask:
+        """Hair of the head with landmarks (68, 2) px, NaN where missing, in a picture (H, W, 3) uint8.
+
+        ``fit`` is the fitted face.
+        """
+        ...
+
+
+class HairModeler(Protocol):
+    """Builds hair from the pixels that show it; a network, say, or :func:`toongeo.build_hair`."""
+
+    def __call__(self, img: np.ndarray, face: Any, rig: Any, mask: np.ndarray) -> Any:
+        """Hair of the picture (H, W, 3) uint8, as a :class:`toongeo.Hair` in the model frame.
+
+        ``face`` is a :class:`toongeo.AlignedFace` that has made room for hair, ``rig`` its :class:`toongeo.Rig`,
+        ``mask`` (H, W) bool. None: there is no hair to build, and it stays painted on the head.
+        """
         ...
 
 

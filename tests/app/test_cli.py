@@ -1,3 +1,4 @@
+import importlib
 import subprocess
 import sys
 
@@ -74,6 +75,23 @@ def test_make_writes_a_vrm_with_its_author_and_a_small_glb(tmp_path, capsys):
     assert document["extensionsUsed"] == ["KHR_mesh_quantization"]
 
 
+def test_make_takes_a_hair_mask_or_no_hair(tmp_path, capsys, monkeypatch):
+    module = importlib.import_module("toongeo.app.make")
+    asked = []
+
+    def stop(*_, **options):
+        asked.append((options["hair"], options["hair_mask"]))
+        raise ValueError("enough")
+
+    monkeypatch.setattr(module, "make_avatar", stop)
+    command = ["make", str(PICTURE), "--landmarks", str(POINTS), "-o", str(tmp_path / "a.glb")]
+    mask = tmp_path / "mask.png"
+    mask.write_bytes(PICTURE.read_bytes())
+    for more in ([], ["--no-hair"], ["--hair-mask", str(mask)]):
+        assert main([*command, *more]) == 2
+    assert asked == [(True, None), (False, None), (True, mask)]
+
+
 def test_an_option_that_the_format_has_not_is_refused_before_the_work(tmp_path, capsys, monkeypatch):
     arguments = ["make", str(PICTURE), "--landmarks", str(POINTS)]
     monkeypatch.setattr("toongeo.app.make.make_avatar", None)
@@ -85,10 +103,11 @@ def test_an_option_that_the_format_has_not_is_refused_before_the_work(tmp_path, 
     assert not list(tmp_path.iterdir())
 
 
-def test_demo_writes_its_four_kinds_of_file(tmp_path, capsys):
+def test_demo_writes_its_files(tmp_path, capsys):
     assert main(["demo", "-o", str(tmp_path / "demo")]) == 0
     names = {path.name for path in (tmp_path / "demo").iterdir()}
-    assert names == {"avatar.glb", "avatar.obj", "avatar.mtl", "avatar_texture.png", "contact-sheet.png"}
+    textures = {"avatar_texture.png", "avatar_texture_1.png"}  # of the head, and of its hair
+    assert names == {"avatar.glb", "avatar.obj", "avatar.mtl", "contact-sheet.png"} | textures
     printed = capsys.readouterr().out
     assert all(name in printed for name in names)
 
@@ -141,6 +160,26 @@ def test_the_module_runs_as_a_program():
         cwd=PORTRAITS.parents[1],
     )
     assert done.stdout.startswith("toongeo ")
+
+
+def test_landmarks_opens_the_editor(tmp_path, monkeypatch, capsys):
+    from toongeo.app.editor.editor_server import EditorServer
+
+    def interrupt(server):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(EditorServer, "serve_forever", interrupt)
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    assert main(["landmarks", str(PICTURE), "--landmarks", str(POINTS), "-o", str(tmp_path / "a.json")]) == 0
+    address = capsys.readouterr().out.splitlines()[0].removeprefix("editor: ")
+    assert opened == [address] and address.startswith("http://127.0.0.1:")
+    assert main(["landmarks", str(PICTURE), "--no-browser"]) == 0 and len(opened) == 1
+    capsys.readouterr()
+    assert main(["landmarks", str(PICTURE), "-o", str(PICTURE)]) == 2
+    assert "output: expected one of" in capsys.readouterr().err
+    assert main(["landmarks", str(PICTURE), "--face", "-1"]) == 2
+    assert "face: expected 0 for the largest face" in capsys.readouterr().err
 
 
 def test_make_takes_landmark_files_of_other_programs(tmp_path, capsys, monkeypatch):

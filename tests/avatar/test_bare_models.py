@@ -63,7 +63,7 @@ def avatars(models, cartoon):
 
     def get(name, picture):
         if (name, picture) not in made:
-            made[name, picture] = make_avatar(*cartoon(picture), model=models(name), texture_size=SIZE)
+            made[name, picture] = make_avatar(*cartoon(picture), model=models(name), texture_size=SIZE, hair=False)
         return made[name, picture]
 
     return get
@@ -161,7 +161,7 @@ def test_a_head_without_one_part_keeps_the_others(model, cartoon, part):
         "named": {"n_named": 0},
         "cavity": {"regions": {name: mask for name, mask in model.regions.items() if name != "mouth_cavity"}},
     }
-    avatar = make_avatar(*cartoon("bad_guy"), model=replace(model, **changes[part]), texture_size=64)
+    avatar = make_avatar(*cartoon("bad_guy"), model=replace(model, **changes[part]), texture_size=64, hair=False)
     assert len(avatar.report.warnings) in (1, 2) and len(avatar.surfaces()) == 3
     # The eyeballs lie behind the lids: beside the middle of each opening, not before it.
     for side, corners in enumerate(([42, 45], [36, 39])):

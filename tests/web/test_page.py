@@ -153,6 +153,31 @@ def test_names_are_text_and_nothing_else(browse, tmp_path):
     assert report["console"] == []
 
 
+def test_a_switch_takes_the_hair_off(browse, tmp_path):
+    """The page is as without hair while it is off, and as before when it is on again."""
+    square = np.array([[-60.0, -60, 0], [60, -60, 0], [60, 60, 0], [-60, 60, 0]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    head = SceneMesh("head", square, faces)
+    hair = SceneMesh("hair", 0.5 * square + [0, 0, 20], faces, color=(0.6, 0.1, 0.1), double_sided=True, parent="head")
+    visible = {"run": "document.getElementById('hair').checkVisibility()"}
+    shots = []
+    for name, meshes in (("with", (head, hair)), ("without", (head,))):
+        page = tmp_path / f"{name}.html"
+        page.write_text(page_html(encode_glb(Scene(meshes)), title=name), encoding="utf-8")
+        steps = [READY, visible, {"shot": "a.png"}]
+        if name == "with":
+            steps += [{"click": "#hair"}, {"shot": "b.png"}, {"click": "#hair"}, {"shot": "c.png"}]
+        report, folder = browse(page.as_uri(), steps)
+        assert report["console"] == []
+        assert report["results"] == [name == "with"]
+        shots.append({path.stem: picture(path) for path in folder.glob("?.png")})
+    worn, bare = shots
+    np.testing.assert_array_equal(worn["a"], worn["c"])
+    assert np.abs(worn["a"] - worn["b"]).max() > 50
+    centre = tuple(slice(n // 2 - 20, n // 2 + 20) for n in bare["a"].shape[:2])
+    assert np.abs(worn["b"][centre] - bare["a"][centre]).mean() < 3
+
+
 def test_a_damaged_avatar_is_told(browse, tmp_path):
     page = tmp_path / "bad.html"
     page.write_text(page_html(b"glTF" + bytes(40), title="bad"), encoding="utf-8")
@@ -170,7 +195,7 @@ def test_the_page_is_escaped_and_sealed(tmp_path):
         page_html(b"PK", title="zip")
 
 
-def test_the_bundle_is_what_its_sources_give(tmp_path):
+def test_the_bundles_are_what_their_sources_give(tmp_path):
     """Rebuilt with the versions of package-lock.json, byte for byte."""
     npm = shutil.which("npm")
     required = os.environ.get("TOONGEO_REQUIRE_WEB") == "1"
@@ -179,4 +204,5 @@ def test_the_bundle_is_what_its_sources_give(tmp_path):
     command = ["node", str(PAGE / "build.mjs"), str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     assert done.returncode == 0, done.stderr
-    assert Path(tmp_path / "viewer.js").read_bytes() == (PAGE / "viewer.js").read_bytes()
+    for bundle in ("viewer.js", "editor.js"):
+        assert Path(tmp_path / bundle).read_bytes() == (PAGE / bundle).read_bytes(), bundle

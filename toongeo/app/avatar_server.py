@@ -12,12 +12,12 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from toongeo.app.glb_page import glb_page, read_avatar_glb, target_names
+from toongeo.app.loopback import HOST, refusal
 from toongeo.app.read_message import read_message
 from toongeo.driving.websockets_adapter import load_websockets
 
-__all__ = ["AvatarServer", "HOST", "LARGEST", "PAGE", "acknowledged"]
+__all__ = ["AvatarServer", "LARGEST", "PAGE", "acknowledged"]
 
-HOST = "127.0.0.1"  # loopback, and nothing else: a face is nobody else's business
 LARGEST = 16_384  # bytes of a message; 54 weights with their names take 2,000
 _PATIENCE = 1.0  # s that a page has to say goodbye when the server ends
 PAGE, _SOURCE = "/page", "/source"
@@ -68,7 +68,6 @@ class AvatarServer:
 
     async def __aenter__(self) -> AvatarServer:
         websockets = load_websockets()
-        # Browsers say where a page comes from, and no other page may talk to us; programs say nothing.
         self._server = await websockets.serve(
             self._talk,
             HOST,
@@ -112,16 +111,9 @@ class AvatarServer:
         return response
 
     def _refusal(self, request: Any) -> tuple[HTTPStatus, str] | None:
-        hosts = {f"{name}:{self.port}" for name in (HOST, "localhost")}
-        named, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
-        if len(named) != 1 or named[0] not in hosts:  # a name that an attacker made point at this computer
-            return HTTPStatus.FORBIDDEN, "this host is not served\n"
-        if not {f"http://{host}" for host in hosts}.issuperset(origins):
-            return HTTPStatus.FORBIDDEN, "pages from elsewhere are not served\n"
         given = parse_qs(urlsplit(request.path).query).get("token", [""])[0]
-        if not secrets.compare_digest(given.encode(), self.token.encode()):
-            return HTTPStatus.UNAUTHORIZED, "the token is missing or wrong\n"
-        return None
+        named, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+        return refusal(named, origins, given, port=self.port, token=self.token)
 
     async def _talk(self, connection: Any) -> None:
         is_page = urlsplit(connection.request.path).path == PAGE

@@ -62,11 +62,15 @@ def _parser() -> argparse.ArgumentParser:
     make.add_argument("--author", action="append", metavar="NAME", help="for the licence of a .vrm; may be repeated")
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
     make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
+    hair = make.add_mutually_exclusive_group()
+    hair.add_argument("--hair-mask", type=Path, metavar="FILE", help="picture of IMAGE's size, white where hair is")
+    hair.add_argument("--no-hair", action="store_true", help="build no hair; it stays painted on the head")
     make.add_argument("--scheme", default="auto", metavar="NAME", help=_SCHEME)
     make.set_defaults(run=_make)
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
+    _add_landmarks_editor(commands)
     _add_drive(commands)
     _add_serve(commands)
     view = commands.add_parser("view", help="show an avatar in the browser")
@@ -87,6 +91,18 @@ def _parser() -> argparse.ArgumentParser:
     rig.set_defaults(run=_rig)
     add_bench(commands)
     return parser
+
+
+def _add_landmarks_editor(commands: Any) -> None:
+    editor = commands.add_parser("landmarks", help="place and correct landmarks in the browser, on this computer only")
+    editor.add_argument("path", type=Path, metavar="PATH", help="a picture, or a folder of pictures")
+    editor.add_argument("--landmarks", type=Path, metavar="FILE", help="where to start (default: the file beside it)")
+    which = "which face, in the file or, by size, in the picture (default 0)"
+    editor.add_argument("--face", type=int, default=0, metavar="N", help=which)
+    editor.add_argument("-o", "--output", type=Path, metavar="OUT", help=".pts, .json, .csv (default: beside it)")
+    editor.add_argument("--port", type=int, default=0, metavar="N", help="default: a free one")
+    editor.add_argument("--no-browser", action="store_true", help="only print where the page is")
+    editor.set_defaults(run=_landmarks)
 
 
 def _add_landmarks(command: argparse.ArgumentParser) -> None:
@@ -140,6 +156,8 @@ def _make(options: argparse.Namespace) -> None:
         crop=options.crop,
         snap=options.snap,
         photometric=options.photometric,
+        hair=not options.no_hair,
+        hair_mask=options.hair_mask,
         format=options.format,
         options=_saving(options),
     )
@@ -171,6 +189,19 @@ def _demo(options: argparse.Namespace) -> None:
     from toongeo.app.demo import demo
 
     demo(options.output)
+
+
+def _landmarks(options: argparse.Namespace) -> None:
+    from toongeo.app.editor.edit_landmarks import edit_landmarks
+
+    edit_landmarks(
+        options.path,
+        landmarks=options.landmarks,
+        output=options.output,
+        face=options.face,
+        port=options.port,
+        show=not options.no_browser,
+    )
 
 
 def _drive(options: argparse.Namespace) -> None:

@@ -27,6 +27,8 @@ def make(
     crop: Crop = "head",
     snap: bool = False,
     photometric: bool = False,
+    hair: bool = True,
+    hair_mask: Path | None = None,
     format: str | None = None,
     options: Mapping[str, Any] | None = None,
 ) -> Avatar:
@@ -45,7 +47,7 @@ def make(
     """
     saving = {"crop": crop, **(options or {})}
     writer_for(output, format, saving)
-    check_output(output, {"image": image, "landmarks": source.file}, format)
+    check_output(output, {"image": image, "landmarks": source.file, "hair_mask": hair_mask}, format)
     img = read_image(image)
     points, found = source.landmarks(image, img)
     if isinstance(found, LandmarkFile):
@@ -60,7 +62,14 @@ def make(
             bar.set_description(stage)
 
         avatar = make_avatar(
-            img, points, snap=snap, photometric=photometric, texture_size=texture_size, progress=announce
+            img,
+            points,
+            snap=snap,
+            photometric=photometric,
+            hair=hair,
+            hair_mask=hair_mask,
+            texture_size=texture_size,
+            progress=announce,
         )
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")

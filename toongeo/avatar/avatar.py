@@ -39,7 +39,7 @@ class Avatar(AvatarStages):
     """What :func:`toongeo.make_avatar` builds; every stage's result is kept.
 
     Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
-    ``eyes``, ``texture`` and ``report``.
+    ``eyes``, ``texture``, ``report`` and ``hair``.
     """
 
     @property
@@ -89,7 +89,7 @@ class Avatar(AvatarStages):
         return self.eyes.looking(side, dict(zip(GAZE_NAMES, gaze.tolist(), strict=True)))
 
     def surfaces(self, weights: Weights = None) -> list[Surface]:
-        """Head, left and right eyeball, textured, for :func:`toongeo.render_mesh`."""
+        """Head, left and right eyeball, and hair if there is any, textured, for :func:`toongeo.render_mesh`."""
         model = self.face.model
         atlas = atlas_coordinates(model)
         head = Surface(self.vertices(weights), model.faces, uv=atlas.uv, uv_faces=atlas.uv_faces, texture=self.texture)
@@ -103,7 +103,11 @@ class Avatar(AvatarStages):
             )
             for side, eye in enumerate(model.eyes)
         ]
-        return [head, *eyes]
+        hair = self.hair
+        if hair is None:
+            return [head, *eyes]
+        worn = Surface(hair.vertices, hair.faces, uv=hair.uv, uv_faces=hair.uv_faces, texture=hair.texture)
+        return [head, *eyes, worn]
 
     def render(
         self,
@@ -235,7 +239,8 @@ class Avatar(AvatarStages):
 
     def _camera(self, size: int, yaw: float, pitch: float) -> ScaledOrthographicCamera:
         skin = self.rig.neutral[self.face.region("skin")]
-        low, high = skin.min(0), skin.max(0)
+        shown = skin if self.hair is None else np.vstack([skin, self.hair.vertices])
+        low, high = shown.min(0), shown.max(0)
         return ScaledOrthographicCamera.look(
             yaw, pitch, size=size, centre=(low + high) / 2, extent=_HEADROOM * (high - low).max()
         )

@@ -20,6 +20,7 @@ PLAYER_MESHES = {
     "tongue": "Wolf3D_Tongue",
     "eye_left": "EyeLeft",
     "eye_right": "EyeRight",
+    "hair": "Wolf3D_Hair",
 }
 _LETTERS = {"ih": "I", "oh": "O", "ou": "U"}
 _PLAYER_VISEMES = [(f"viseme_{_LETTERS.get(name, name)}", f"viseme_{name}") for name in SCHEMES["oculus"]]
@@ -49,7 +50,7 @@ def export_targets(names: Names) -> Shapes | None:
 
 def renamed_scene(scene: Scene, names: Mapping[str, str]) -> Scene:
     """The same meshes under other names."""
-    meshes = tuple(replace(mesh, name=names[mesh.name]) for mesh in scene.meshes)
+    meshes = tuple(replace(mesh, name=names[mesh.name], parent=names.get(mesh.parent or "")) for mesh in scene.meshes)
     clip = scene.animation
     if clip is not None:
         clip = replace(clip, weights={names[mesh]: weights for mesh, weights in clip.weights.items()})

@@ -10,6 +10,7 @@ from toongeo.avatar.state import decode_state
 from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, split_seams
 from toongeo.model import MorphableModel, atlas_coordinates, default_model
 from toongeo.model.anatomy.gaze import GAZE_NAMES
+from toongeo.pipeline import Hair
 
 __all__ = ["load_avatar"]
 
@@ -60,7 +61,8 @@ def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = 
     try:
         known = _rig_arrays(scene, model)
         state = decode_state(document.attachment, known, model)
-        return Avatar(**state, texture=_texture(scene))
+        hair = _hair(scene, state.pop("hair", None))
+        return Avatar(**state, texture=_texture(scene.meshes[0]), hair=hair)
     except (LookupError, TypeError, AttributeError, ValueError) as error:
         raise ValueError(f"path: {path} cannot be loaded: {error}") from error
 
@@ -94,8 +96,18 @@ def _file_vertices(mesh: SceneMesh, part: str, rows: np.ndarray, model: Morphabl
     return used[vertex]
 
 
-def _texture(scene: Scene) -> np.ndarray:
-    head = scene.meshes[0]
-    if head.texture is not None:
-        return head.texture
-    return np.full((8, 8, 3), np.rint(255 * np.array(head.color)), np.uint8)
+def _hair(scene: Scene, seams: np.ndarray | None) -> Hair | None:
+    """The hair, whose vertex and uv each point of its mesh is (2, p); None if there is none."""
+    if seams is None:
+        return None
+    (mesh,) = (mesh for mesh in scene.meshes if mesh.name == "hair")
+    vertex, uv = seams.astype(np.int64)
+    vertices, coordinates = np.zeros((vertex.max() + 1, 3)), np.zeros((uv.max() + 1, 2))
+    vertices[vertex], coordinates[uv] = mesh.vertices, mesh.uv
+    return Hair(vertices, vertex[mesh.faces], coordinates, uv[mesh.faces], _texture(mesh))
+
+
+def _texture(mesh: SceneMesh) -> np.ndarray:
+    if mesh.texture is not None:
+        return mesh.texture
+    return np.full((8, 8, 3), np.rint(255 * np.array(mesh.color)), np.uint8)

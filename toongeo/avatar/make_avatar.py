@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, detection_warnings, landmark_errors, shape_warnings
@@ -37,11 +38,11 @@ from toongeo.pipeline import (
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.texture.bake_texture import check_size
-from toongeo.protocols import FaceParser
+from toongeo.protocols import FaceParser, HairModeler
 
 __all__ = ["STAGES", "make_avatar"]
 
-STAGES = ("fit", "parse", "align", "rig", "eyes", "texture", "report")
+STAGES = ("fit", "parse", "align", "rig", "eyes", "hair", "texture", "report")
 _ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
     "cartoon": align_face,
     "caricature": align_caricature,
@@ -60,6 +61,8 @@ def make_avatar(
     gain: float | Literal["auto"] = 1.0,
     method: Literal["cartoon", "caricature"] = "cartoon",
     rig: Literal["transfer", "caricature"] = "transfer",
+    hair: bool | HairModeler = True,
+    hair_mask: GivenMask = None,
     texture_size: int = 1024,
     scheme: Any = "ibug68",
     progress: Callable[[str], None] | None = None,
@@ -94,6 +97,12 @@ def make_avatar(
     rig : {"transfer", "caricature"}
         Where the expressions come from: the template's, by deformation transfer, or the drawing's own, reconstructed
         from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
+    hair : bool or HairModeler
+        Build hair as a mesh of its own, for which the skull gives way (:func:`toongeo.make_room`,
+        :func:`toongeo.build_hair`, or what is given). Where the hair of the picture cannot be told from the rest,
+        ``report.warnings`` says so and all is as with False: hair is painted on the head.
+    hair_mask : (H, W) array_like or path, optional
+        Pixels of hair, made by hand or by another program, in place of :func:`toongeo.find_hair`: bool, or 0..255.
     texture_size : int
         Side of the texture atlas in texels.
     scheme : str, or a table
@@ -105,7 +114,8 @@ def make_avatar(
     Returns
     -------
     Avatar
-        What each stage gave is kept in it: ``fit``, ``parse``, ``face``, ``rig``, ``eyes``, ``texture``, ``report``.
+        What each stage gave is kept in it: ``fit``, ``parse``, ``face``, ``rig``, ``eyes``, ``texture``, ``report``,
+        ``hair``.
 
     Raises
     ------
@@ -135,7 +145,8 @@ def make_avatar(
         fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
         landmarks = fit.project(fit.vertices[fit.landmark_vertices])
     clock.start("parse")
-    parse = parse_face(img, landmarks, fit, parser=parser)
+    drawn, faults = read_mask(hair_mask, img.shape)
+    parse = parse_face(img, landmarks, fit, parser=parser, hair_mask=drawn)
     if snap:
         clock.start("fit")
         landmarks = snap_eyes(landmarks, parse)
@@ -152,21 +163,36 @@ def make_avatar(
     # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
     face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - at_rest.vertices))
     shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
+    aligned = landmark_errors(face, landmarks)  # before points under hair give way to it
+    head = HairyHead(face, shapes, None, faults)
+    if hair and not faults:
+        clock.start("hair")
+        head = add_hair(img, face, shapes, parse, None if hair is True else hair)
+        face, shapes = head.face, head.rig
     clock.start("texture")
     irises = find_irises(img, landmarks)
     eyes = aim_eyes(face, eyes, irises)
-    texture = bake_texture(img, face, rig=shapes, size=texture_size, parse=parse)
+    shown = parse if head.hair is None else under_hair(parse, face)
+    texture = bake_texture(img, face, rig=shapes, size=texture_size, parse=shown)
     texture = bake_eyes(img, face, eyes, texture, irises)
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(
         coarse=landmark_errors(fit, landmarks),
-        aligned=landmark_errors(face, landmarks),
+        aligned=aligned,
         quality=quality,
         seconds=clock.stop(),
-        warnings=(*doubts, *fit.report.warnings, *missing_parts(model), *shape_warnings(face, eyes, quality)),
+        warnings=(
+            *doubts,
+            *fit.report.warnings,
+            *missing_parts(model),
+            *shape_warnings(face, eyes, quality),
+            *(f"hair is painted on the head: {reason}" for reason in head.reasons),
+        ),
     )
-    return Avatar(fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report)
+    return Avatar(
+        fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report, hair=head.hair
+    )
 
 
 def _rigged(

@@ -12,7 +12,7 @@ import numpy as np
 
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.export_targets import PLAYER_MESHES, PLAYER_ROOT, Names, export_targets, renamed_scene
-from toongeo.avatar.scene import avatar_scene, demo_clip, own_shapes, weight_clip
+from toongeo.avatar.scene import avatar_scene, demo_clip, own_shapes, uv_colours, weight_clip
 from toongeo.avatar.stages import AvatarStages
 from toongeo.avatar.state import encode_state
 from toongeo.io import (
@@ -33,7 +33,6 @@ from toongeo.io import (
 from toongeo.io.writers.write_usdz import usd_modules
 from toongeo.model.expression_schemes import PRESETS, SCHEMES
 from toongeo.pipeline import Rig
-from toongeo.render import sample_image, uv_to_px
 
 __all__ = ["avatar_attachment", "page_presets", "rig_arrays", "save_avatar", "writer_for"]
 
@@ -139,8 +138,13 @@ def avatar_attachment(avatar: AvatarStages, *, coarse: bool) -> bytes:
         steps = np.float32(_COARSE_STEPS)
         parse = replace(parse, confidence=np.rint(parse.confidence * steps) / steps)
     # The camera's picture is known to the reader as the file's image, the rig's arrays as its meshes.
-    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name != "texture"}
-    return encode_state({**state, "parse": parse}, rig_arrays(avatar.rig), avatar.face.model)
+    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name not in ("texture", "hair")}
+    state["parse"] = parse
+    if avatar.hair is not None:
+        # The mesh of the file has a point for each pair of these.
+        vertex, uv, _ = split_seams(avatar.hair.faces, avatar.hair.uv_faces)
+        state["hair"] = np.stack([vertex, uv]).astype(np.int32)
+    return encode_state(state, rig_arrays(avatar.rig), avatar.face.model)
 
 
 def rig_arrays(rig: Rig) -> dict[str, np.ndarray]:
@@ -174,7 +178,7 @@ def _write_obj_sequence(path: Path, avatar: AvatarStages, *, crop: Crop = "head"
 
 
 def _write_ply(path: Path, avatar: AvatarStages, *, crop: Crop = "head") -> None:
-    """Neutral head and eyeballs in one mesh, with uv and the texture's colours at the vertices.
+    """Neutral head, eyeballs and hair in one mesh, with uv and the textures' colours at the vertices.
 
     Vertices keep their order; those on seams, which have several uv, come again at the end.
     """
@@ -185,7 +189,8 @@ def _write_ply(path: Path, avatar: AvatarStages, *, crop: Crop = "head") -> None
     again = np.r_[False, vertex[1:] == vertex[:-1]]
     order = np.argsort(again, kind="stable")
     uv = uvs[0][corner[order]]
-    colours = np.rint(sample_image(avatar.texture, uv_to_px(uv, *avatar.texture.shape[:2]))).astype(np.uint8)
+    looks = np.vstack([uv_colours(mesh) for mesh in meshes])
+    colours = np.rint(looks[corner[order]]).astype(np.uint8)
     write_ply(path, points[0][vertex[order]], np.argsort(order)[split], colours, uv)
 
 

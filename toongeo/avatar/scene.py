@@ -14,7 +14,7 @@ from toongeo.io import Scene, SceneAnimation, SceneMesh
 from toongeo.model import MorphableModel, atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES, gaze_names
 from toongeo.model.anatomy.parts import SIDES, TEETH
-from toongeo.pipeline import Eyes, Rig
+from toongeo.pipeline import Eyes, Hair, Rig
 from toongeo.render import sample_image, uv_to_px
 
 __all__ = ["Shapes", "avatar_scene", "demo_clip", "head_parts", "own_shapes", "weight_clip"]
@@ -47,7 +47,7 @@ def avatar_scene(
     textured: bool = True,
     split: bool = True,
 ) -> Scene:
-    """Head, teeth, tongue and eyeballs of an avatar.
+    """Head, teeth, tongue, eyeballs and hair of an avatar.
 
     The mesh ``head`` (the skin, with what lies in mouth and sockets) has every target; the others have those that move
     them. Each eyeball is about its centre.
@@ -71,14 +71,17 @@ def avatar_scene(
     Returns
     -------
     Scene
-        Meshes ``head``, ``teeth``, ``tongue``, ``eye_left`` and ``eye_right``, which share one texture. A model
-        without the regions of teeth and tongue has them in the head.
+        Meshes ``head``, ``teeth``, ``tongue``, ``eye_left`` and ``eye_right``, which share one texture, and ``hair``
+        with its own, on the head, unless there is none or the crop is "face". A model without the regions of teeth and
+        tongue has them in the head.
     """
     shapes = own_shapes(avatar.rig) if shapes is None else shapes
     model = avatar.face.model
     parts = head_parts(model, crop) if split else {"head": crop_faces(model, crop)}
     meshes = [_part(avatar, name, faces, shapes, crop) for name, faces in parts.items()]
     meshes += [_eye(avatar.eyes, side, avatar.texture, shapes) for side in range(len(avatar.eyes.templates))]
+    if avatar.hair is not None and crop != "face":
+        meshes.append(_hair(avatar.hair))
     clip = None if animation is None else _tracks(avatar.rig, animation, shapes, meshes)
     return Scene(tuple(meshes if textured else map(_plain, meshes)), clip)
 
@@ -182,6 +185,19 @@ def _eye(eyes: Eyes, side: int, texture: np.ndarray, shapes: Shapes) -> SceneMes
     )
 
 
+def _hair(hair: Hair) -> SceneMesh:
+    return SceneMesh(
+        name="hair",
+        vertices=hair.vertices,
+        faces=hair.faces,
+        uv=hair.uv,
+        uv_faces=hair.uv_faces,
+        texture=hair.texture,
+        double_sided=True,
+        parent="head",
+    )
+
+
 def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[SceneMesh]) -> SceneAnimation:
     """The weights of the rig as those of the meshes' targets.
 
@@ -205,7 +221,11 @@ def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[Sc
 
 def _plain(mesh: SceneMesh) -> SceneMesh:
     """A mesh in the mean colour that its texture has at its vertices."""
-    assert mesh.texture is not None and mesh.uv is not None
-    colours = sample_image(mesh.texture, uv_to_px(mesh.uv, *mesh.texture.shape[:2]))
-    red, green, blue = (colours.mean(axis=0) / 255).tolist()
+    red, green, blue = (uv_colours(mesh).mean(axis=0) / 255).tolist()
     return replace(mesh, texture=None, color=(red, green, blue))
+
+
+def uv_colours(mesh: SceneMesh) -> np.ndarray:
+    """Colours (t, 3), 0..255, that a textured mesh has at its uv."""
+    assert mesh.texture is not None and mesh.uv is not None
+    return np.asarray(sample_image(mesh.texture, uv_to_px(mesh.uv, *mesh.texture.shape[:2])))

@@ -6,7 +6,7 @@ import numpy as np
 
 from toongeo._read_only import read_only
 from toongeo.avatar.report import AvatarReport
-from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Rig
+from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Hair, Rig
 from toongeo.protocols import FaceParse
 
 __all__ = ["AvatarStages"]
@@ -26,6 +26,8 @@ class AvatarStages:
     eyes : Eyes
     texture : (size, size, 3) uint8 RGB
     report : AvatarReport
+    hair : Hair or None
+        A mesh of its own, rigid on the head; None where hair is painted on the head, or there is none.
     """
 
     fit: FaceFit
@@ -35,6 +37,7 @@ class AvatarStages:
     eyes: Eyes
     texture: np.ndarray
     report: AvatarReport
+    hair: Hair | None = None
 
     def __post_init__(self) -> None:
         read_only(self, "texture")

@@ -17,7 +17,7 @@ from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
 from toongeo.pipeline import AlignedFace, AlignReport, Eyes, FaceFit, Rig, RigReport
 from toongeo.pipeline.fit.face_fit import FitReport, PhotometricReport
-from toongeo.protocols import FaceParse
+from toongeo.protocols import FaceParse, HairMask
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 
 __all__ = ["decode_state", "encode_state", "model_checksum"]
@@ -34,6 +34,7 @@ _CLASSES: dict[str, Any] = {
         FaceFit,
         FaceParse,
         FitReport,
+        HairMask,
         MeshQuality,
         PerspectiveCamera,
         PhotometricReport,
@@ -42,6 +43,8 @@ _CLASSES: dict[str, Any] = {
         ScaledOrthographicCamera,
     )
 }
+# Fields that came later are left out where they are None: a file without them is as it was before.
+_LATER = ("hair",)
 _VERSION = 1
 _MOST_BYTES = 1 << 30  # that a file may ask for
 
@@ -137,6 +140,7 @@ class _Writer:
                 return {"eye": side}
         if is_dataclass(value) and type(value) is _CLASSES.get(type(value).__name__):
             parts = {field.name: getattr(value, field.name) for field in fields(value) if field.init}
+            parts = {name: v for name, v in parts.items() if v is not None or name not in _LATER}
             return {type(value).__name__: {name: self.node(v, f"{where}.{name}") for name, v in parts.items()}}
         kinds = f"numbers, texts, arrays or {', '.join(_CLASSES)}"
         raise ValueError(f"{where}: expected {kinds} in a loadable file, got {type(value)}")

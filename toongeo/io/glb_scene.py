@@ -33,23 +33,30 @@ def glb_scene(document: GlbDocument) -> Scene:
     Raises
     ------
     ValueError
-        If a node holds no mesh or is turned, nested or scaled by axis, a mesh has several primitives, or anything else
-        is not as :func:`encode_glb` writes it.
+        If a node holds no mesh or is turned, nested twice or scaled by axis, a mesh has several primitives, or
+        anything else is not as :func:`encode_glb` writes it.
     """
     textures: dict[int, NDArray[np.uint8]] = {}
     try:
         with np.errstate(all="ignore"):  # numbers that are no longer finite are refused by the scene
-            meshes = [_mesh(document, node, textures) for node in document.json.get("nodes", [])]
+            nodes = document.json.get("nodes", [])
+            above = {child: node for node in nodes for child in node.get("children", [])}
+            meshes = [_mesh(document, node, above.get(k), textures) for k, node in enumerate(nodes)]
         return Scene(tuple(meshes), _animation(document))
     except (LookupError, TypeError, AttributeError, ArithmeticError, OSError) as error:  # OSError: of the picture
         reason = f"{type(error).__name__}: {error}"[:200]
         raise ValueError(f"document: expected a GLB as toongeo writes it, got another ({reason})") from error
 
 
-def _mesh(document: GlbDocument, node: dict[str, Any], textures: dict[int, NDArray[np.uint8]]) -> SceneMesh:
-    unknown = set(node) - {"name", "mesh", "translation", "scale"}
+def _mesh(
+    document: GlbDocument,
+    node: dict[str, Any],
+    above: dict[str, Any] | None,
+    textures: dict[int, NDArray[np.uint8]],
+) -> SceneMesh:
+    unknown = set(node) - {"name", "mesh", "translation", "scale", "children"}
     scale = set(node.get("scale", [1.0]))
-    if "mesh" not in node or unknown or len(scale) != 1:
+    if "mesh" not in node or unknown or len(scale) != 1 or (above is not None and "translation" in above):
         raise ValueError(f"document: expected nodes of a mesh, a translation and one scale, got {str(node)[:200]}")
     mesh = document.json["meshes"][node["mesh"]]
     if len(mesh["primitives"]) != 1:
@@ -58,10 +65,11 @@ def _mesh(document: GlbDocument, node: dict[str, Any], textures: dict[int, NDArr
     attributes = {name: _numbers(document, index) for name, index in primitive["attributes"].items()}
     normals = attributes["NORMAL"]
     pivot = np.array(node["translation"]) / METRES if "translation" in node else None
-    millimetres = scale.pop() / METRES
+    millimetres = scale.pop() * (1.0 if above is None else above.get("scale", [1.0])[0]) / METRES
     vertices = attributes["POSITION"].astype(np.float64) * millimetres
     targets = [_numbers(document, target["POSITION"]) for target in primitive.get("targets", [])]
-    material = document.json["materials"][primitive["material"]]["pbrMetallicRoughness"]
+    look = document.json["materials"][primitive["material"]]
+    material = look["pbrMetallicRoughness"]
     linear = np.array(material["baseColorFactor"][:3])
     uv = attributes.get("TEXCOORD_0")
     return SceneMesh(
@@ -77,6 +85,8 @@ def _mesh(document: GlbDocument, node: dict[str, Any], textures: dict[int, NDArr
         targets=np.stack(targets).astype(np.float64) * millimetres if targets else None,
         target_names=tuple(mesh.get("extras", {}).get("targetNames", ())),
         pivot=pivot,
+        double_sided=look.get("doubleSided", False),
+        parent=None if above is None else above["name"],
     )
 
 

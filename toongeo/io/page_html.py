@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from string import Template
 
-__all__ = ["page_html"]
+__all__ = ["PAGE", "digest", "page_html"]
 
-_PAGE = Path(__file__).parent / "page"
+PAGE = Path(__file__).parent / "page"
 
 
 def page_html(
@@ -48,10 +48,10 @@ def page_html(
     """
     if glb[:4] != b"glTF":
         raise ValueError(f"glb: expected the bytes of a .glb file, got {glb[:8]!r}")
-    script = (_PAGE / "viewer.js").read_text(encoding="utf-8")
-    style = (_PAGE / "page.css").read_text(encoding="utf-8")
+    script = (PAGE / "viewer.js").read_text(encoding="utf-8")
+    style = (PAGE / "page.css").read_text(encoding="utf-8")
     settings = {"title": title, "presets": presets or {}, "live": live}
-    return Template((_PAGE / "page.html").read_text(encoding="utf-8")).substitute(
+    return Template((PAGE / "page.html").read_text(encoding="utf-8")).substitute(
         policy=html.escape(_content_policy(script, style, live)),
         title=html.escape(title),
         style=style,
@@ -67,10 +67,11 @@ def _content_policy(script: str, style: str, live: str | None) -> str:
     # A policy names a place without the query, where the token is.
     connections = " ".join(["blob:", "data:"] + ([live.partition("?")[0]] if live else []))
     return (
-        f"default-src 'none'; script-src {_digest(script)}; style-src {_digest(style)}; img-src blob: data:; "
+        f"default-src 'none'; script-src {digest(script)}; style-src {digest(style)}; img-src blob: data:; "
         f"connect-src {connections}; base-uri 'none'; form-action 'none'"
     )
 
 
-def _digest(text: str) -> str:
+def digest(text: str) -> str:
+    """How a policy names a script or a style that may run."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode('ascii')}'"

@@ -42,6 +42,10 @@ class SceneMesh:
     pivot
         (3,) mm, model frame: about which the mesh turns (the centre of an eyeball). The writer makes the
         vertices local to it; here they stay in the model frame.
+    double_sided
+        Whether the inner side of its faces is drawn, too.
+    parent
+        Name of a mesh of the scene on which this one sits, and which takes it along.
 
     Raises
     ------
@@ -61,6 +65,8 @@ class SceneMesh:
     targets: NDArray[np.floating] | None = None
     target_names: tuple[str, ...] = ()
     pivot: NDArray[np.floating] | None = None
+    double_sided: bool = False
+    parent: str | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name:
@@ -182,6 +188,11 @@ class Scene:
         targets = {mesh.name: len(mesh.target_names) for mesh in self.meshes}
         if not targets or len(targets) != len(self.meshes):
             raise ValueError(f"meshes: expected at least one, of different names, got {list(targets)}")
+        for mesh in self.meshes:
+            above = next((m for m in self.meshes if m.name == mesh.parent), None)
+            if mesh.parent is not None and (above is None or above.parent is not None or above.pivot is not None):
+                label = f"parent of mesh {mesh.name!r}"
+                raise ValueError(f"{label}: expected a mesh without parent and pivot, got {mesh.parent!r}")
         if self.animation is None:
             return
         for name in (*self.animation.weights, *self.animation.rotations):

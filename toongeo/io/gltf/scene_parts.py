@@ -42,8 +42,9 @@ def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
     textures: dict[bytes, int] = {}
     if options.quantize:
         builder.use("KHR_mesh_quantization", required=True)
+    units = {mesh.name: _unit(mesh) if options.quantize else None for mesh in scene.meshes}
     for mesh in scene.meshes:
-        unit = _unit(mesh) if options.quantize else None
+        unit = units[mesh.name]
         primitive = _primitive(builder, mesh, options, unit)
         primitive["material"] = _material(builder, mesh, textures, options.picture)
         k = len(mesh.target_names)
@@ -55,15 +56,20 @@ def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
             extras={"targetNames": list(mesh.target_names)} if k else None,
         )
         pivot = None if mesh.pivot is None else (mesh.pivot * METRES).tolist()
-        size = None if unit is None else [unit * METRES] * 3
+        above = units.get(mesh.parent or "")
+        size = None if unit is None else [unit * METRES if above is None else unit / above] * 3
         builder.add("nodes", name=mesh.name, mesh=index, translation=pivot, scale=size)
-    nodes = list(range(len(scene.meshes)))
+    names = [mesh.name for mesh in scene.meshes]
+    for child, mesh in enumerate(scene.meshes):
+        if mesh.parent is not None:
+            builder.json["nodes"][names.index(mesh.parent)].setdefault("children", []).append(child)
+    nodes = [node for node, mesh in enumerate(scene.meshes) if mesh.parent is None]
     if options.root is not None:
         nodes = [builder.add("nodes", name=options.root, children=nodes)]
     builder.json["scenes"] = [{"nodes": nodes}]
     builder.json["scene"] = 0
     if scene.animation is not None:
-        _animate(builder, scene.animation, [mesh.name for mesh in scene.meshes])
+        _animate(builder, scene.animation, names)
 
 
 def _local(mesh: SceneMesh) -> NDArray[np.floating]:
@@ -132,7 +138,8 @@ def _material(builder: GlbBuilder, mesh: SceneMesh, textures: dict[bytes, int], 
     }
     if mesh.texture is not None:
         look["baseColorTexture"] = {"index": _texture(builder, mesh.texture, textures, picture)}
-    return builder.add("materials", name=mesh.name, pbrMetallicRoughness=look)
+    both = True if mesh.double_sided else None
+    return builder.add("materials", name=mesh.name, pbrMetallicRoughness=look, doubleSided=both)
 
 
 def _texture(builder: GlbBuilder, pixels: NDArray[np.uint8], textures: dict[bytes, int], picture: Picture) -> int:

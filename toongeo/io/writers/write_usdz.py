@@ -135,6 +135,8 @@ def _mesh(usd: Any, stage: Any, path: str, mesh: SceneMesh, tolerance_mm: float)
     prim.CreatePointsAttr(points)
     prim.CreateFaceVertexCountsAttr(usd.Vt.IntArray(len(mesh.faces), 3))
     prim.CreateFaceVertexIndicesAttr(usd.Vt.IntArray.FromNumpy(mesh.faces.ravel().astype(np.int32)))
+    if mesh.double_sided:
+        prim.CreateDoubleSidedAttr(True)
     prim.CreateSubdivisionSchemeAttr(usd.UsdGeom.Tokens.none)
     prim.CreateExtentAttr(usd.UsdGeom.PointBased.ComputeExtent(points))
     if mesh.uv is not None and mesh.uv_faces is not None:

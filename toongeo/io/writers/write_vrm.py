@@ -88,7 +88,8 @@ def write_vrm(
             raise ValueError(f"scene: expected a mesh {eye!r} with a pivot, got {', '.join(names)}")
     binds = {name: _binds(scene, name, weights) for name, weights in expressions.items()}
     builder = GlbBuilder()
-    still = Scene(tuple(replace(mesh, pivot=None) for mesh in scene.meshes))  # skins hold the places of bones
+    # Skins hold the places of bones, and what they move stands on its own.
+    still = Scene(tuple(replace(mesh, pivot=None, parent=None) for mesh in scene.meshes))
     add_scene(builder, still, GlbOptions(normal_deltas=normal_deltas, tolerance_mm=tolerance_mm, picture=picture))
     bones = _add_bones(builder, scene)
     head = _bones()["Head"][2]

@@ -11,27 +11,26 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.arrays import Floats, Mask
+from toongeo.arrays import Mask
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_image import check_image
 from toongeo.io.landmark_array import landmark_array
-from toongeo.model.default_model import default_model
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
+from toongeo.pipeline.parse.completed_landmarks import completed_landmarks
 from toongeo.pipeline.parse.face_zones import FaceZones, face_zones
+from toongeo.pipeline.parse.find_hair import find_hair
 from toongeo.pipeline.parse.head_and_skin import HeadAndSkin, head_and_skin
 from toongeo.pipeline.parse.lids.find_lids import Lids, find_lids
 from toongeo.pipeline.parse.masks import filled, grown
 from toongeo.pipeline.parse.working_view import WorkingView, working_view
-from toongeo.protocols import FaceLabel, FaceParse, FittedFace
+from toongeo.protocols import FaceLabel, FaceParse, FittedFace, HairFinder
 
 __all__ = ["ClassicalParser"]
 
 _EARS = 0.06  # of the head's size: so far beyond the fitted ears there are ears
 _HAIR_SHARE = 0.01  # of the hair's pixels: so common is a colour of hair
 _LINES = 0.02  # of the head's size: the breadth of the outlines around it
-_STRANDS = 0.01  # of the head's size: thinner bridges between hair and clothes do not count
-_HANG = 0.3  # of the head's size: so far from the head there is hair below the chin
 _FINE = 4  # subpixels a side
 
 
@@ -43,13 +42,15 @@ class ClassicalParser:
     head and a model of the skin's colour that is learned from the face itself. The eyes are found in the picture
     at its own resolution: shifted and scaled copies of the landmarks' contour are weighed by what is inside them and
     across their line. Brows are what differs from skin along their landmarks; nose and lips are where
-    the landmarks are. Dark outlines belong to neither side: they are ``OTHER``, and so are glasses; a beard that has
-    the colour of the hair is ``HAIR``.
+    the landmarks are. Hair and hats are where ``hair_finder`` finds them. Dark outlines belong to neither side: they
+    are ``OTHER``, and so are glasses and beards; clothes are background.
 
     Parameters
     ----------
     head_px : float
         Size of the head, px, at which all but the eyes is cut; larger is finer and slower.
+    hair_finder : HairFinder
+        `find_hair` unless another is given; what it finds is kept in ``parse.hair``.
 
     Raises
     ------
@@ -67,6 +68,7 @@ class ClassicalParser:
     """
 
     head_px: float = 200.0
+    hair_finder: HairFinder = find_hair
 
     def __post_init__(self) -> None:
         if not self.head_px >= 64:
@@ -77,42 +79,40 @@ class ClassicalParser:
         check_image(img)
         given = landmark_array(landmarks)
         face = fit if fit is not None else fit_3dmm(None, given)
-        points = _completed(given, face)
+        points = completed_landmarks(given, face)
         on_head = face.camera.project(face.vertices[face.region("skin")])
         view = working_view(img, np.vstack([on_head, points]), self.head_px)
         zones = face_zones(view, points, face)
         with one_thread():
             cut = head_and_skin(view, zones)
-        labels, confidence = _full_size(view, _labels(view, zones, cut), cut.confidence, img.shape[:2])
+        hair = self.hair_finder(img, given, face)
+        labels = _labels(view, zones, cut, _in_view(view, hair.mask))
+        labels, confidence = _full_size(view, labels, cut.confidence, img.shape[:2])
+        if hair.hat is not None:
+            labels[hair.hat] = FaceLabel.HAT
         for side, label in (("right", FaceLabel.EYE_RIGHT), ("left", FaceLabel.EYE_LEFT)):
             _paint_eye(labels, confidence, find_lids(img, points, side), label)
-        return FaceParse(labels, confidence)
+        return FaceParse(labels, confidence, hair)
 
 
-def _completed(landmarks: Floats, fit: FittedFace) -> Floats:
-    """Landmarks (68, 2) with the missing ones where the fitted face has them."""
-    missing = np.isnan(landmarks[:, 0])
-    if not missing.any():
-        return landmarks
-    vertices = getattr(fit, "landmark_vertices", default_model().landmarks)
-    points = landmarks.copy()
-    points[missing] = fit.camera.project(fit.vertices[vertices[missing]])
-    return points
+def _in_view(view: WorkingView, mask: Mask) -> Mask:
+    height, width = view.pixels.shape[:2]
+    part = mask[view.window()].astype(np.float32)
+    return np.asarray(cv2.resize(part, (width, height), interpolation=cv2.INTER_AREA) > 0.5)
 
 
-def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin) -> NDArray[np.uint8]:
+def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin, hair: Mask) -> NDArray[np.uint8]:
     """Labels (h, w) of the working view; later ones cover earlier ones."""
     labels = np.full(view.pixels.shape[:2], FaceLabel.BACKGROUND, np.uint8)
     strange = cut.head & ~cut.skin
     neck = (zones.below_chin | (zones.neck & zones.lower_face)) & ~zones.hull
     ears = grown(zones.ears, _EARS * view.head) & ~zones.hull & ~neck
     labels[strange & zones.hull] = FaceLabel.OTHER
-    hair = _hair(view, zones, strange)
-    labels[hair] = FaceLabel.HAIR
     labels[cut.skin] = FaceLabel.SKIN
     labels[cut.skin & neck] = FaceLabel.NECK
     labels[cut.skin & ears] = FaceLabel.EARS
     labels[cut.skin & zones.nose] = FaceLabel.NOSE
+    labels[hair] = FaceLabel.HAIR
     thick = hair & ~cut.outline
     strands = hair & (colour_share(colour_codes(view.pixels), thick) > _HAIR_SHARE)
     beside = grown(labels != FaceLabel.BACKGROUND, _LINES * view.head)  # not the lines of clothes
@@ -123,20 +123,6 @@ def _labels(view: WorkingView, zones: FaceZones, cut: HeadAndSkin) -> NDArray[np
     labels[zones.lower_lip] = FaceLabel.LOWER_LIP
     labels[zones.inner_mouth] = FaceLabel.INNER_MOUTH
     return labels
-
-
-def _hair(view: WorkingView, zones: FaceZones, strange: Mask) -> Mask:
-    """What of the head is not skin; within the face and below the chin, only what has a colour of the hair above.
-
-    Below the chin it must also hang together with the hair above, and not hang too far, or it is taken for clothes.
-    """
-    crown = strange & ~zones.below_chin & ~zones.hull
-    alike = crown | (strange & (colour_share(colour_codes(view.pixels), crown) > _HAIR_SHARE))
-    firm = grown(alike, -_STRANDS * view.head)
-    _, pieces = cv2.connectedComponents(firm.astype(np.uint8))
-    hanging = firm & np.isin(pieces, np.unique(pieces[firm & crown]))
-    allowed = grown(hanging, 2 * _STRANDS * view.head) & grown(zones.silhouette, _HANG * view.head)
-    return alike & (~zones.below_chin | allowed)
 
 
 def _full_size(

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from toongeo.arrays import Mask
 
-__all__ = ["Mask", "filled", "grown"]
+__all__ = ["Mask", "filled", "grown", "signed_distance"]
 
 
 def filled(shape: tuple[int, ...], polygon: NDArray[np.floating]) -> Mask:
@@ -26,3 +26,10 @@ def grown(mask: Mask, radius: float) -> Mask:
         return mask.copy()
     away = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)
     return np.asarray(away <= radius, np.bool_)
+
+
+def signed_distance(mask: Mask) -> NDArray[np.float32]:
+    """Distance (h, w), px, to the border of a mask, positive inside."""
+    inside = cv2.distanceTransform(mask.astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_3)
+    outside = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_3)
+    return np.asarray(inside - outside, np.float32)

@@ -53,7 +53,7 @@ class WorkingView:
         return slice(y, y + height), slice(x, x + width)
 
 
-def working_view(img: NDArray[np.uint8], head_points: Floats, side: float) -> WorkingView:
+def working_view(img: NDArray[np.uint8], head_points: Floats, side: float, margin: float = _MARGIN) -> WorkingView:
     """Crop a picture to a head and resize it, so that the head becomes ``side`` px large.
 
     Parameters
@@ -62,12 +62,14 @@ def working_view(img: NDArray[np.uint8], head_points: Floats, side: float) -> Wo
     head_points : (k, 2) float64, px
         Points all over the head.
     side : float, px
+    margin : float
+        What is kept on all sides, in sizes of the head.
     """
     low, high = head_points.min(axis=0), head_points.max(axis=0)
     extent = max(float((high - low).max()), 1.0)
     limit = np.array(img.shape[1::-1])
-    start = np.clip(np.floor(low - _MARGIN * extent), 0, limit - 1).astype(np.int64)
-    end = np.clip(np.ceil(high + _MARGIN * extent) + 1, start + 1, limit).astype(np.int64)
+    start = np.clip(np.floor(low - margin * extent), 0, limit - 1).astype(np.int64)
+    end = np.clip(np.ceil(high + margin * extent) + 1, start + 1, limit).astype(np.int64)
     size = end - start
     shape = np.maximum(np.rint(size * side / extent), 8).astype(int)
     crop = np.ascontiguousarray(img[start[1] : end[1], start[0] : end[0]])

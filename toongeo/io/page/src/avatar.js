@@ -38,5 +38,7 @@ export async function loadAvatar(bytes) {
     return found;
   }
 
-  return { scene: gltf.scene, bounds: new Box3().setFromObject(gltf.scene, true), clips: gltf.animations, names, set, weights, wear };
+  const hair = meshes.find((mesh) => mesh.name === 'hair');
+
+  return { scene: gltf.scene, hair, bounds: new Box3().setFromObject(gltf.scene, true), clips: gltf.animations, names, set, weights, wear };
 }

@@ -53,6 +53,13 @@ async function start() {
   const turning = (seconds) => stage.turn(0.7 * seconds, 0);
   toggle(byId('turn'), (on) => stage.every(turning, on));
 
+  if (avatar.hair) {
+    byId('hair').hidden = false;
+    toggle(byId('hair'), (on) => {
+      avatar.hair.visible = on;
+      stage.draw();
+    });
+  }
   if (avatar.clips.length) {
     const mixer = new AnimationMixer(avatar.scene);
     const action = mixer.clipAction(avatar.clips[0]);

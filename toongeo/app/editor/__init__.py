@@ -1,0 +1,1 @@
+"""``toongeo landmarks``: landmarks placed and corrected by hand, with the fitted face beside them."""

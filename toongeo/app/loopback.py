@@ -1,0 +1,43 @@
+"""Who may talk to a server on this computer."""
+
+import secrets
+from collections.abc import Sequence
+from http import HTTPStatus
+
+__all__ = ["HOST", "refusal"]
+
+HOST = "127.0.0.1"  # loopback, and nothing else: a face is nobody else's business
+
+
+def refusal(
+    hosts: Sequence[str], origins: Sequence[str], given: str, *, port: int, token: str
+) -> tuple[HTTPStatus, str] | None:
+    """Why a request is not served, as status and text; None if it is.
+
+    Parameters
+    ----------
+    hosts, origins
+        All values of the headers ``Host`` and ``Origin``. Browsers say where a page comes from, and no other page may
+        talk to us; programs say nothing.
+    given : str
+        The token that came with the request.
+    port : int
+        Of the server.
+    token : str
+        That of the server.
+
+    Examples
+    --------
+    >>> refusal(["127.0.0.1:80"], [], "abc", port=80, token="abc") is None
+    True
+    >>> refusal(["127.0.0.1:80"], ["https://example.org"], "abc", port=80, token="abc")
+    (<HTTPStatus.FORBIDDEN: 403>, 'pages from elsewhere are not served\\n')
+    """
+    own = {f"{name}:{port}" for name in (HOST, "localhost")}
+    if len(hosts) != 1 or hosts[0] not in own:  # a name that an attacker made point at this computer
+        return HTTPStatus.FORBIDDEN, "this host is not served\n"
+    if not {f"http://{host}" for host in own}.issuperset(origins):
+        return HTTPStatus.FORBIDDEN, "pages from elsewhere are not served\n"
+    if not secrets.compare_digest(given.encode(), token.encode()):
+        return HTTPStatus.UNAUTHORIZED, "the token is missing or wrong\n"
+    return None

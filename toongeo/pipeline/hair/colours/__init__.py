@@ -1,0 +1,3 @@
+"""The texture of the shell."""
+
+__all__: list[str] = []

@@ -1,0 +1,98 @@
+"""A head that fits under its hair."""
+
+import dataclasses
+
+import numpy as np
+
+from toongeo.arrays import Mask
+from toongeo.geometry import vertex_normals
+from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.hair.plane.above_nape import above_nape
+from toongeo.pipeline.hair.plane.depth_maps import silhouette
+from toongeo.pipeline.hair.plane.hair_raster import hair_raster
+from toongeo.pipeline.hair.plane.masks import closed, signed
+from toongeo.pipeline.hair.plane.working_plane import WorkingPlane, working_plane
+from toongeo.pipeline.hair.room.drawn_inside import drawn_inside
+from toongeo.pipeline.hair.room.hidden_ears import hidden_ears, shrunken_ears
+from toongeo.pipeline.hair.room.lowered_crown import lowered_crown
+from toongeo.pipeline.rig.rig import Rig
+from toongeo.protocols import FaceLabel, FaceParse
+
+__all__ = ["make_room"]
+
+_SKIN = tuple(
+    label for label in FaceLabel if label not in (FaceLabel.BACKGROUND, FaceLabel.HAIR, FaceLabel.OTHER, FaceLabel.HAT)
+)
+_COVERED_MM = 1.0  # so far inside the hair a vertex is covered
+_SIDEWAYS = 0.6  # cosine to the viewer below which a covered side of the head gives way
+
+
+def make_room(face: AlignedFace, rig: Rig, mask: Mask, parse: FaceParse | None = None) -> tuple[AlignedFace, Rig]:
+    """The face and its rig, skull and covered ears drawn inside the outline of hair and skin in the picture.
+
+    Parameters
+    ----------
+    face : AlignedFace
+    rig : Rig
+        Of that face.
+    mask : (H, W) bool
+        Hair in the picture.
+    parse : FaceParse, optional
+        Of the picture; without it all that is not hair counts as skin.
+
+    Returns
+    -------
+    face, rig
+        Both moved by the same displacement; what the picture shows of the face stays where it is.
+    """
+    plane = working_plane(face, mask)
+    F, model = face.faces, face.model
+    crown_faces = F[above_nape(model)[F].all(1)]
+    crown = silhouette(plane, plane.of(face.vertices), crown_faces)
+    raster = hair_raster(plane, mask, crown)
+    hair = raster.hair
+    if not hair.any():
+        return face, rig
+    moved = plane.back(lowered_crown(face, plane, hair, crown))
+    face = dataclasses.replace(face, vertices=face.vertices + moved)
+    skin, shown = _shown(plane, hair, mask, parse)
+    X = plane.of(face.vertices)
+    ears = hidden_ears(face, plane, skin, hair)
+    shift = shrunken_ears(face, X, ears)
+    outline = _outline(face, plane, X, hair | skin, shown | ~raster.pictured)
+    shift += drawn_inside(face, plane, X + shift, outline, _moving(face, plane, hair, ears))
+    shift = plane.back(shift)
+    face = dataclasses.replace(face, vertices=face.vertices + shift)
+    return face, dataclasses.replace(rig, neutral=rig.neutral + moved + shift)
+
+
+def _shown(plane: WorkingPlane, hair: Mask, mask: Mask, parse: FaceParse | None) -> tuple[Mask, Mask]:
+    """Cells that show skin, and cells that show the head."""
+    skin = ~mask if parse is None else parse.mask(*_SKIN) & ~mask
+    head = np.ones_like(mask) if parse is None else ~parse.mask(FaceLabel.BACKGROUND)
+    layers = (plane.warp(layer.astype(np.float32)) > 0.5 for layer in (skin, head))
+    skin_cells, head_cells = layers
+    return skin_cells & ~hair, head_cells
+
+
+def _outline(face: AlignedFace, plane: WorkingPlane, X: np.ndarray, seen: Mask, shown: Mask) -> Mask:
+    """Cells within which the head is to lie: hair and skin, and all that the head has below the chin."""
+    F = face.faces
+    front = silhouette(plane, X, F[(face.region("face") & ~face.region("ears"))[F].all(1)])
+    outline = seen | (front & shown)
+    chin = int(np.clip(plane.cells(X[face.landmark_vertices[[8]], :2])[0, 1], 0, len(outline)))
+    outline[:chin] |= silhouette(plane, X, F)[:chin]
+    return closed(outline, 4.0)
+
+
+def _moving(face: AlignedFace, plane: WorkingPlane, hair: Mask, ears: tuple[str, ...]) -> Mask:
+    """Vertices (n,) that may give way: the scalp, hidden ears, and sides of the head under hair."""
+    X, regions = plane.of(face.vertices), face.model.regions
+    inside = plane.sample(signed(hair), X[:, :2])
+    facing = np.abs(vertex_normals(face.vertices, face.faces) @ plane.rotation[2])
+    moving = above_nape(face.model) | (regions["skin"] & (inside > _COVERED_MM) & (facing < _SIDEWAYS))
+    for name in ears:
+        moving = moving | regions[name]
+    seen = face.landmark_vertices[inside[face.landmark_vertices] < _COVERED_MM]
+    moving[seen] = False
+    return np.asarray(moving)

@@ -1,0 +1,3 @@
+"""The picture's plane in millimetres, and rasters of it."""
+
+__all__: list[str] = []

@@ -1,0 +1,3 @@
+"""The two sheets of the shell."""
+
+__all__: list[str] = []

@@ -1,0 +1,106 @@
+"""The hair of a head in its picture."""
+
+from __future__ import annotations
+
+import os
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from toongeo.arrays import Singles
+from toongeo.geometry.one_thread import one_thread
+from toongeo.io.check_image import check_image
+from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
+from toongeo.pipeline.parse.completed_landmarks import completed_landmarks
+from toongeo.pipeline.parse.given_hair import given_hair
+from toongeo.pipeline.parse.hair.hair_model import hair_model
+from toongeo.pipeline.parse.hair.hair_trust import distrust
+from toongeo.pipeline.parse.hair.hair_view import hair_view
+from toongeo.pipeline.parse.hair.head_zones import head_zones
+from toongeo.pipeline.parse.hair.segment_hair import segment_hair
+from toongeo.pipeline.parse.masks import signed_distance
+from toongeo.pipeline.parse.working_view import WorkingView
+from toongeo.protocols import FittedFace, HairMask
+
+__all__ = ["find_hair"]
+
+
+def find_hair(
+    img: NDArray[np.uint8],
+    landmarks: ArrayLike,
+    fit: FittedFace | None = None,
+    *,
+    hair_mask: ArrayLike | str | os.PathLike[str] | None = None,
+    scheme: str = "ibug68",
+) -> HairMask:
+    """Which pixels of a picture are hair, and whether hair can be built from them.
+
+    The head's surroundings are cut into superpixels; two sets of boosted trees, trained on renders of the template
+    alone, say how likely each is hair or a hat, by its colour, texture and place and by what is around it; two
+    different cuts follow its outlines. Hair grows on the head: brows and crumbs are left out, and below the chin counts
+    only what hangs from above, not coats and collars. A mask is trusted where the two cuts agree, the trees are
+    sure, and the hair tops the head.
+
+    Parameters
+    ----------
+    img : (H, W, 3) uint8 RGB
+        Photo, painting, cartoon or grey picture.
+    landmarks : (68, 2) array_like, px
+        iBUG-68 order; a NaN row is a missing point.
+    fit : FittedFace, optional
+        The face as `fit_3dmm` found it; it is fitted to the landmarks if None.
+    hair_mask : array_like or path, optional
+        A mask made elsewhere, which is believed: (H, W) bool or 0..255, or a picture of such.
+    scheme : {"ibug68", "ibug51", "ibug49", "mediapipe478"}
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
+
+    Returns
+    -------
+    HairMask
+        Hair and hat, soft edges, and why the mask is not to be trusted, if so.
+
+    Raises
+    ------
+    ValueError
+        If picture, landmarks or mask have another shape or type, or the mask is empty or covers the whole picture.
+
+    Examples
+    --------
+    >>> from toongeo import read_image, read_landmarks
+    >>> from toongeo.model import data_path
+    >>> img = read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> hair = find_hair(img, read_landmarks(data_path("examples/portraits/moustache_man.pts")))
+    >>> hair.trusted, hair.mask.shape == img.shape[:2]
+    (True, True)
+    """
+    check_image(img)
+    given = ibug_landmarks(landmarks, scheme)
+    if hair_mask is not None:
+        return given_hair(hair_mask, img.shape)
+    face = fit if fit is not None else fit_3dmm(None, given)
+    points = completed_landmarks(given, face)
+    view = hair_view(img, face)
+    with one_thread():
+        found = segment_hair(view, head_zones(view, points, face), hair_model())
+    hair, hat = (_enlarged(view, part, img.shape) for part in (found.hair, found.hat))
+    alpha = np.zeros(img.shape[:2], np.float32)
+    alpha[view.window()] = _resized(view, found.alpha)
+    reasons = distrust(found.measures)
+    return HairMask(hair, not reasons, reasons, np.clip(alpha, 0, 1), hat & ~hair)
+
+
+def _enlarged(view: WorkingView, mask: NDArray[np.bool_], shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """A mask of the view in the whole picture; its outline is interpolated as a distance, so that it has no stairs."""
+    full = np.zeros(shape[:2], bool)
+    if mask.any():
+        full[view.window()] = _resized(view, cv2.GaussianBlur(np.clip(signed_distance(mask), -6, 6), (0, 0), 0.8)) > 0
+    return full
+
+
+def _resized(view: WorkingView, field: NDArray[np.generic]) -> Singles:
+    width, height = (int(n) for n in view.size)
+    larger = width > field.shape[1]
+    method = cv2.INTER_LINEAR if larger else cv2.INTER_AREA
+    return np.asarray(cv2.resize(field.astype(np.float32), (width, height), interpolation=method), np.float32)
