@@ -26,7 +26,8 @@ class VideoDriver:
     """Reads the expression off a film of a performer, as an :class:`toongeo.ExpressionDriver`.
 
     :func:`toongeo.track_landmarks` follows the face, :class:`LandmarkDriver` reads the weights. While the face is lost,
-    the last weights are held.
+    the last weights are held. Weights are as good as the points: on films like photographs they are near to the truth,
+    on films of drawn faces not yet (``benchmarks/RESULTS.md``).
 
     Parameters
     ----------
