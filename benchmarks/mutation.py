@@ -192,6 +192,9 @@ def main() -> None:
     parser.add_argument("--log", type=Path, help="mutation.jsonl in the work folder, if not given")
     parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "toongeo-mutation")
     parser.add_argument("--map", nargs="*", metavar="TESTS", help="run these tests (all) with coverage, and stop")
+    parser.add_argument(
+        "--part", default="0/1", metavar="K/N", help="every n-th fault from the k-th: processes share a log"
+    )
     parser.add_argument("--report", action="store_true", help="only print what the log holds")
     options = parser.parse_args()
     options.log = options.log or options.work / "mutation.jsonl"
@@ -205,7 +208,8 @@ def main() -> None:
         known.gather(options.map)
         return
     done = {json.loads(line)["id"] for line in options.log.read_text().splitlines()} if options.log.exists() else set()
-    for path, mutant in sample(tree.root, options.paths, options.sample, options.seed):
+    first, step = map(int, options.part.split("/"))
+    for path, mutant in sample(tree.root, options.paths, options.sample, options.seed)[first::step]:
         name = f"{path}:{mutant.start}:{mutant.stop}:{mutant.after}"
         if name in done:
             continue
