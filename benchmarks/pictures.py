@@ -42,6 +42,7 @@ CHOSEN_ON = {
     "stages": EXAMPLES,
     "table1": (*EXAMPLES, *CARICATURES),
     "table2": (*EXAMPLES, *CARICATURES),
+    "tracking": ("astronaut", "moustache_man"),  # films of their avatars
 }
 
 

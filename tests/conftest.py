@@ -111,6 +111,14 @@ def avatar(avatars):
 
 
 @pytest.fixture(scope="session")
+def performance(once, avatar):
+    """A short film of that avatar, hidden for a while."""
+    from tests.filmed import filmed
+
+    return once("performance", lambda: filmed(avatar, 2.4, fps=10, size=240, hidden=(1.0, 1.4)))
+
+
+@pytest.fixture(scope="session")
 def fits(once, cartoon):
     """``fits(name)`` -> `fit_3dmm` of a bundled picture."""
     from toongeo import fit_3dmm

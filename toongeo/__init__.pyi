@@ -21,6 +21,7 @@ from toongeo.caricature import weights_of_expression as weights_of_expression
 from toongeo.driving import ArkitDriver as ArkitDriver
 from toongeo.driving import LandmarkDriver as LandmarkDriver
 from toongeo.driving import Take as Take
+from toongeo.driving import VideoDriver as VideoDriver
 from toongeo.driving import send_weights as send_weights
 from toongeo.editing import ClassicalTextureGenerator as ClassicalTextureGenerator
 from toongeo.editing import ExpressionEditor as ExpressionEditor
@@ -37,6 +38,7 @@ from toongeo.io import LandmarkFile as LandmarkFile
 from toongeo.io import read_image as read_image
 from toongeo.io import read_landmark_file as read_landmark_file
 from toongeo.io import read_landmarks as read_landmarks
+from toongeo.io import read_video as read_video
 from toongeo.io import write_landmarks as write_landmarks
 from toongeo.metrics import GradientCheck as GradientCheck
 from toongeo.metrics import check_gradient as check_gradient
@@ -54,6 +56,8 @@ from toongeo.pipeline import FaceFit as FaceFit
 from toongeo.pipeline import FitOptions as FitOptions
 from toongeo.pipeline import Hair as Hair
 from toongeo.pipeline import JawOptions as JawOptions
+from toongeo.pipeline import LandmarkTrack as LandmarkTrack
+from toongeo.pipeline import LandmarkTracker as LandmarkTracker
 from toongeo.pipeline import PhotometricOptions as PhotometricOptions
 from toongeo.pipeline import PriorOptions as PriorOptions
 from toongeo.pipeline import RidgeRegressor as RidgeRegressor
@@ -86,6 +90,7 @@ from toongeo.pipeline import residual_map as residual_map
 from toongeo.pipeline import rig_mesh as rig_mesh
 from toongeo.pipeline import snap_eyes as snap_eyes
 from toongeo.pipeline import texture_coordinates as texture_coordinates
+from toongeo.pipeline import track_landmarks as track_landmarks
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
 from toongeo.protocols import Coefficients as Coefficients
 from toongeo.protocols import ExpressionDriver as ExpressionDriver

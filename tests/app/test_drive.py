@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from tests.driving.conftest import film
+from tests.driving.conftest import film, rms
 from toongeo.app.cli import main
 from toongeo.app.read_take import read_take
 from toongeo.app.write_video import write_video
@@ -103,7 +103,7 @@ def test_arrays_of_weights(tmp_path):
         ({"--weights": "broken.csv"}, "51 of 52 columns are missing"),
         ({"--weights": "broken.npy"}, "broken.npy: expected an array of numbers"),
         ({"--weights": "take.txt"}, "weights: expected a .csv or .npy file"),
-        ({"-o": "take.avi"}, "output: expected a name that ends in .mp4 or .glb"),
+        ({"-o": "take.avi"}, "output: expected a name that ends in .mp4, .glb, .csv"),
         ({"-o": "no/take.mp4"}, "output: no folder"),
         ({"-o": "folder.mp4"}, "it is a folder"),
         ({"-o": "folder.glb"}, "folder.glb"),
@@ -185,3 +185,48 @@ def test_what_cannot_be_viewed_or_served(glb, tmp_path, capsys):
         ):
             assert main([command, str(tmp_path / name), "--no-open"]) == 2
             assert message in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def actor(performance, tmp_path_factory):
+    """The film as a file."""
+    path = tmp_path_factory.mktemp("actor") / "actor.mp4"
+    write_video(path, performance.frames, 240, performance.fps)
+    return path
+
+
+def test_a_film_drives(glb, actor, performance, tmp_path, capsys):
+    """Weights that are read off a film of another size and rate, and played again."""
+    table = tmp_path / "take.csv"
+    assert main(["drive", str(glb), "--video", str(actor), "-o", str(table), "--fps", "10"]) == 0
+    take = read_take(table)
+    np.testing.assert_allclose(take.times, np.arange(24) / 10, atol=1e-4)
+    seen, acted = ~performance.hidden, performance.weights.any(axis=0)
+    truth = performance.weights[seen][:, acted]
+    assert rms(take.weights[seen, :46][:, acted] - truth) < 0.75 * rms(truth)
+    smile = EXPRESSIONS.index("mouthSmileLeft")
+    assert np.corrcoef(take.weights[seen, smile], performance.weights[seen, smile])[0, 1] > 0.9
+    assert main(["drive", str(glb), "--weights", str(table), "-o", str(tmp_path / "take.glb")]) == 0
+    assert capsys.readouterr().out.count("wrote ") == 2
+
+
+def test_films_that_cannot_drive(glb, actor, tmp_path, capsys):
+    from toongeo.app.read_take import TakeSource
+
+    wall, one, text = tmp_path / "wall.mp4", tmp_path / "one.mp4", tmp_path / "text.mp4"
+    write_video(wall, [np.full((64, 64, 3), 90, np.uint8)] * 2, 64, 10)
+    write_video(one, [np.full((64, 64, 3), 90, np.uint8)], 64, 10)
+    text.write_text("no film")
+    for path, message in (
+        (wall, "wall.mp4: frames: no face was found in any of 2 frames"),
+        (one, "one.mp4: expected a video of several frames, got a single one"),
+        (text, "text.mp4: expected a video, got a file that OpenCV cannot open"),
+        (tmp_path / "none.mp4", "none.mp4"),
+    ):
+        assert main(["drive", str(glb), "--video", str(path), "-o", str(tmp_path / "out.csv")]) == 2
+        assert message in capsys.readouterr().err
+    assert main(["drive", str(glb), "--video", str(actor), "-o", str(actor)]) == 2
+    assert "but" in capsys.readouterr().err and not (tmp_path / "out.csv").exists()
+    for files in ({}, {"weights": actor, "video": actor}):
+        with pytest.raises(ValueError, match="weights, landmarks, video: expected one of the three"):
+            TakeSource(**files)

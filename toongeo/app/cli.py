@@ -115,12 +115,15 @@ def _add_landmarks(command: argparse.ArgumentParser) -> None:
 
 
 def _add_drive(commands: Any) -> None:
-    drive = commands.add_parser("drive", help="play a performance on an avatar, as a video or an animated GLB")
+    drive = commands.add_parser("drive", help="play a performance on an avatar: a video, an animated GLB, or a table")
     drive.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
     source = drive.add_mutually_exclusive_group(required=True)
     source.add_argument("--weights", type=Path, metavar="TAKE", help="Live Link Face .csv, or .npy (frames, 52 or 54)")
     source.add_argument("--landmarks", type=Path, metavar="TAKE", help=".npy .csv .json .xml, the first frame neutral")
-    drive.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4 or .glb")
+    source.add_argument("--video", type=Path, metavar="FILM", help="of an actor whose face is followed: .mp4, .mov ...")
+    drive.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4, .glb, or .csv of Live Link Face"
+    )
     drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
     drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
     drive.add_argument("--scheme", default="auto", metavar="NAME", help=_SCHEME)
@@ -203,17 +206,10 @@ def _landmarks(options: argparse.Namespace) -> None:
 
 def _drive(options: argparse.Namespace) -> None:
     from toongeo.app.drive import drive
+    from toongeo.app.read_take import TakeSource
 
-    drive(
-        options.avatar,
-        options.output,
-        weights=options.weights,
-        landmarks=options.landmarks,
-        size=options.size,
-        fps=options.fps,
-        take_fps=options.take_fps,
-        scheme=options.scheme,
-    )
+    source = TakeSource(options.weights, options.landmarks, options.video, options.take_fps, options.scheme)
+    drive(options.avatar, options.output, source, size=options.size, fps=options.fps)
 
 
 def _serve(options: argparse.Namespace) -> None:

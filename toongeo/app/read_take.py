@@ -1,15 +1,65 @@
 """Takes from files."""
 
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.driving import ArkitDriver, LandmarkDriver, Take
-from toongeo.io import read_landmark_frames
+from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver
+from toongeo.io import read_landmark_frames, read_video
 from toongeo.model.expression_schemes import EXPRESSIONS
 
-__all__ = ["read_landmark_take", "read_take"]
+__all__ = ["TakeSource", "read_landmark_take", "read_take"]
+
+
+@dataclass(frozen=True)
+class TakeSource:
+    """One file of a performance.
+
+    Attributes
+    ----------
+    weights : Path, optional
+        Live Link Face ``.csv``, or ``.npy`` of (f, 52) ARKit weights or (f, 54) of ours.
+    landmarks : Path, optional
+        Of a performer in each frame, the first of which is neutral: see :func:`toongeo.io.read_landmark_frames`.
+    video : Path, optional
+        A film of a performer, who looks neutral in some frames.
+    fps : float, optional
+        Frames a second, of a file that does not say it, or instead of what it says.
+    scheme : str
+        What the landmarks are: see :func:`toongeo.read_landmark_file`.
+    """
+
+    weights: Path | None = None
+    landmarks: Path | None = None
+    video: Path | None = None
+    fps: float | None = None
+    scheme: str = "auto"
+
+    def __post_init__(self) -> None:
+        if sum(file is not None for file in self.files.values()) != 1:
+            raise ValueError("weights, landmarks, video: expected one of the three")
+
+    @property
+    def files(self) -> dict[str, Path | None]:
+        """The files by the name of their argument."""
+        return {"weights": self.weights, "landmarks": self.landmarks, "video": self.video}
+
+    def take(self) -> Take:
+        """The performance.
+
+        Raises
+        ------
+        OSError, ValueError
+            If the file cannot be read or is not what it should be.
+        """
+        if self.weights is not None:
+            return read_take(self.weights, self.fps)
+        if self.landmarks is not None:
+            return read_landmark_take(self.landmarks, self.fps, scheme=self.scheme)
+        video = read_video(str(self.video))
+        return VideoDriver().take(video if self.fps is None else replace(video, fps=self.fps))
 
 
 def read_take(path: Path, fps: float | None = None) -> Take:

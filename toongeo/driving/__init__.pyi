@@ -7,3 +7,5 @@ from toongeo.driving.landmark_rig import LandmarkRig as LandmarkRig
 from toongeo.driving.read_live_link import read_live_link as read_live_link
 from toongeo.driving.send_weights import send_weights as send_weights
 from toongeo.driving.take import Take as Take
+from toongeo.driving.video_driver import VideoDriver as VideoDriver
+from toongeo.driving.write_live_link import write_live_link as write_live_link

@@ -13,20 +13,19 @@ from numpy.typing import ArrayLike
 from toongeo.arrays import Floats
 from toongeo.avatar.avatar import Avatar
 from toongeo.driving.landmark_frames import landmark_frames
-from toongeo.driving.landmark_pose import FEWEST, LandmarkPose, landmark_pose
+from toongeo.driving.landmark_noise import FIRST_NOISE, doubt_of, noise_of
+from toongeo.driving.landmark_pose import FEWEST, landmark_pose, landmark_poses
 from toongeo.driving.landmark_rig import LandmarkRig
 from toongeo.driving.one_euro_filter import OneEuroFilter
+from toongeo.driving.performer_of_frames import performer_of_frames
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.expression_schemes import EXPRESSIONS
 from toongeo.pipeline import Rig
 
 __all__ = ["LandmarkDriver", "LiveLandmarks"]
 
-_FIRST_NOISE = 1e-3  # of the face's width: what is assumed before anything is known
-LEAST_NOISE = 1e-5  # so that landmarks without noise are explained exactly
-_CAUTION = 2.0  # how much more noise the weights assume than there is: quiet weights are worth a little bias
+_CAUTION = 2.0  # as chosen for landmarks that are exact but for noise
 _REMEMBERED = 90  # frames from which live noise is told
-_UNKNOWNS = 40  # about as many of the 136 coordinates are explained by weights and pose, whatever they are
 
 
 class LandmarkDriver:
@@ -40,9 +39,17 @@ class LandmarkDriver:
     ----------
     performer : Avatar, LandmarkRig, (68, 2) px landmarks of a neutral frame, or None
         Whose landmarks will be seen. The better it is known, the better the weights: an avatar of the performer knows
-        most; of a neutral frame a face is fitted; with None the face is found from the sequence itself.
+        most; of a neutral frame a face is fitted; with None a neutral frame is found in the sequence itself.
     scheme : str
         What all landmarks are: see :func:`toongeo.ibug_landmarks`.
+    caution : float
+        How much more noise the weights assume than the landmarks show: quiet weights are worth a little bias. Points
+        that were found in pictures err together, as no noise does, and want about 5.
+
+    Raises
+    ------
+    ValueError
+        If landmarks have another shape, or the caution is not positive.
 
     Examples
     --------
@@ -60,8 +67,16 @@ class LandmarkDriver:
 
     names = EXPRESSIONS
 
-    def __init__(self, performer: Avatar | LandmarkRig | ArrayLike | None = None, *, scheme: str = "ibug68") -> None:
-        self._scheme = scheme
+    def __init__(
+        self,
+        performer: Avatar | LandmarkRig | ArrayLike | None = None,
+        *,
+        scheme: str = "ibug68",
+        caution: float = _CAUTION,
+    ) -> None:
+        if not (np.isfinite(caution) and caution > 0):
+            raise ValueError(f"caution: expected a factor > 0, got {caution!r}")
+        self._scheme, self._caution = scheme, caution
         self._rig: LandmarkRig | None
         if performer is None or isinstance(performer, LandmarkRig):
             self._rig = performer
@@ -93,10 +108,10 @@ class LandmarkDriver:
         if not (np.isfinite(fps) and fps > 0):
             raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
         with one_thread():
-            rig = LandmarkRig.of_frames(sequence) if self._rig is None else self._rig
-            poses = _poses(rig, sequence)
+            rig = performer_of_frames(sequence) if self._rig is None else self._rig
+            poses = landmark_poses(rig, sequence, FIRST_NOISE)
             errors = np.array([pose.errors(x, rig) for pose, x in zip(poses, sequence, strict=True)])
-            noise, doubt = noise_of(errors), doubt_of(errors)
+            noise, doubt = noise_of(errors), doubt_of(errors, self._caution)
             moved = np.array([pose.head_frame(x, rig) for pose, x in zip(poses, sequence, strict=True)])
             moved = _smoothed(moved, noise * rig.width, fps)
             weights, rows = np.zeros(len(rig.names)), []
@@ -115,7 +130,7 @@ class LandmarkDriver:
         """
         if self._rig is None:
             raise ValueError("performer: expected an avatar or a neutral frame for live driving, got None")
-        return LiveLandmarks(self._rig, self._scheme)
+        return LiveLandmarks(self._rig, self._scheme, self._caution)
 
 
 class LiveLandmarks:
@@ -124,10 +139,10 @@ class LiveLandmarks:
     Smooths by what has come so far, so it follows a little later than :meth:`LandmarkDriver.frames`.
     """
 
-    def __init__(self, rig: LandmarkRig, scheme: str = "ibug68") -> None:
-        self._rig, self._scheme = rig, scheme
+    def __init__(self, rig: LandmarkRig, scheme: str = "ibug68", caution: float = _CAUTION) -> None:
+        self._rig, self._scheme, self._caution = rig, scheme, caution
         self._weights = [np.zeros(len(rig.names)), np.zeros(len(rig.names))]  # of the frame as it is, and smoothed
-        self._filter = OneEuroFilter(_FIRST_NOISE * rig.width)
+        self._filter = OneEuroFilter(FIRST_NOISE * rig.width)
         self._errors: deque[Floats] = deque(maxlen=_REMEMBERED)
 
     def __call__(self, landmarks: ArrayLike, time: float) -> Floats:
@@ -143,49 +158,14 @@ class LiveLandmarks:
         rig, pixels = self._rig, landmark_frames(landmarks, "landmarks", self._scheme)[0]
         if np.isfinite(pixels).all(axis=1).sum() >= FEWEST:
             with one_thread():
-                pose = landmark_pose(rig, pixels, self._weights[0], _FIRST_NOISE)
+                pose = landmark_pose(rig, pixels, self._weights[0], FIRST_NOISE)
                 self._errors.append(pose.errors(pixels, rig))
                 noise = noise_of(np.array(self._errors))
                 self._filter.noise = noise * rig.width
                 there = self._filter(pose.head_frame(pixels, rig), time)
-                smooth = landmark_pose(rig, pose.picture(there, rig), self._weights[1], _CAUTION * noise)
+                smooth = landmark_pose(rig, pose.picture(there, rig), self._weights[1], self._caution * noise)
             self._weights = [pose.weights, smooth.weights]
         return _all_weights(self._weights[1][None], rig.names)[0]
-
-
-def noise_of(errors: Floats) -> float:
-    """Standard deviation of a coordinate's noise from errors (f, 68, 2) of a sequence, in widths of the face.
-
-    What the face explains badly changes slowly, noise does not: second differences in time show the noise alone. The
-    median tells it although some frames jump.
-    """
-    if len(errors) < 3:
-        return _FIRST_NOISE
-    jerk = np.abs(np.diff(errors, 2, axis=0))
-    if not np.isfinite(jerk).any():
-        return _FIRST_NOISE
-    normal = np.sqrt(6) * 0.6745  # of the median of |x - 2 y + z| for unit normal x, y, z
-    explained = np.sqrt(1 - _UNKNOWNS / 136)  # part of the noise that weights and pose have taken up
-    return max(float(np.nanmedian(jerk)) / normal / explained, LEAST_NOISE)
-
-
-def doubt_of(errors: Floats) -> float:
-    """How far to mistrust landmarks with errors (f, 68, 2): what is unexplained is noise, or a face not quite known."""
-    unexplained = float(np.nanmedian(np.abs(errors))) / 0.6745 / np.sqrt(1 - _UNKNOWNS / 136)
-    return max(_CAUTION * unexplained, LEAST_NOISE)
-
-
-def _poses(rig: LandmarkRig, sequence: Floats) -> list[LandmarkPose]:
-    """Of every frame by itself; of one with too few landmarks, that of the frame before it."""
-    seen = np.isfinite(sequence).all(axis=2).sum(axis=1) >= FEWEST
-    if not seen.any():
-        raise ValueError(f"recording: expected a frame with at least {FEWEST} landmarks, got none")
-    weights, poses = np.zeros(len(rig.names)), {}
-    for i in np.flatnonzero(seen):
-        poses[i] = landmark_pose(rig, sequence[i], weights, _FIRST_NOISE)
-        weights = poses[i].weights
-    known = np.maximum.accumulate(np.where(seen, np.arange(len(seen)), seen.argmax()))
-    return [poses[i] for i in known]
 
 
 def _smoothed(moved: Floats, noise: float, fps: float) -> Floats:

@@ -15,7 +15,7 @@ from toongeo.driving.landmark_rig import LandmarkRig
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 
-__all__ = ["FEWEST", "LandmarkPose", "landmark_pose"]
+__all__ = ["FEWEST", "LandmarkPose", "landmark_pose", "landmark_poses"]
 
 FEWEST = 12  # landmarks that a frame must have
 _SPREAD = 1.0  # s.d. of a weight before anything is seen
@@ -95,6 +95,25 @@ def landmark_pose(rig: LandmarkRig, pixels: Floats, weights: Floats, noise: floa
         if change < _SETTLED and step >= _PLAIN_STEPS:
             break
     return pose
+
+
+def landmark_poses(rig: LandmarkRig, sequence: Floats, noise: float) -> list[LandmarkPose]:
+    """Of every frame of (f, 68, 2) px by itself; of one with too few landmarks, that of the frame before it.
+
+    Raises
+    ------
+    ValueError
+        If no frame has enough landmarks, or those of one lie on a line.
+    """
+    seen = np.isfinite(sequence).all(axis=2).sum(axis=1) >= FEWEST
+    if not seen.any():
+        raise ValueError(f"recording: expected a frame with at least {FEWEST} landmarks, got none")
+    weights, poses = np.zeros(len(rig.names)), {}
+    for i in np.flatnonzero(seen):
+        poses[i] = landmark_pose(rig, sequence[i], weights, noise)
+        weights = poses[i].weights
+    known = np.maximum.accumulate(np.where(seen, np.arange(len(seen)), seen.argmax()))
+    return [poses[i] for i in known]
 
 
 def _step(rig: LandmarkRig, pixels: Floats, pose: LandmarkPose, robust_weight: Floats, noise: float) -> LandmarkPose:

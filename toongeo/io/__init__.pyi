@@ -22,6 +22,8 @@ from toongeo.io.readers.read_mesh import read_mesh as read_mesh
 from toongeo.io.readers.read_mesh_landmarks import read_mesh_landmarks as read_mesh_landmarks
 from toongeo.io.readers.read_obj import ObjData as ObjData
 from toongeo.io.readers.read_obj import read_obj as read_obj
+from toongeo.io.readers.read_video import Video as Video
+from toongeo.io.readers.read_video import read_video as read_video
 from toongeo.io.scene import Scene as Scene
 from toongeo.io.scene import SceneAnimation as SceneAnimation
 from toongeo.io.scene import SceneMesh as SceneMesh

@@ -5,13 +5,15 @@ import numpy as np
 __all__ = ["check_image"]
 
 
-def check_image(img: object) -> None:
+def check_image(img: object, name: str = "img") -> None:
     """Refuse what is not a picture as :func:`toongeo.read_image` gives it.
 
     Parameters
     ----------
     img
         Should be (H, W, 3) uint8 RGB with H, W >= 1.
+    name : str
+        What the caller calls it, for the message.
 
     Raises
     ------
@@ -27,4 +29,4 @@ def check_image(img: object) -> None:
     """
     array = np.asarray(img)
     if not (isinstance(img, np.ndarray) and img.dtype == np.uint8 and img.ndim == 3 and img.shape[2] == 3 and img.size):
-        raise ValueError(f"img: expected (H, W, 3) uint8 RGB, got {array.dtype} of shape {array.shape}")
+        raise ValueError(f"{name}: expected (H, W, 3) uint8 RGB, got {array.dtype} of shape {array.shape}")
