@@ -6,8 +6,8 @@ from contextlib import contextmanager
 
 import pytest
 
-from toongeo.app.avatar_server import AvatarServer
-from toongeo.app.serve import run_server
+from toongeo.app.live.avatar_server import AvatarServer
+from toongeo.app.live.serve import run_server
 
 
 @contextmanager

@@ -63,7 +63,7 @@ def server_has_page(server):
 
 def test_messages_are_small():
     """54 weights by name, with all digits, are a fraction of what is taken."""
-    from toongeo.app.avatar_server import LARGEST
+    from toongeo.app.live.avatar_server import LARGEST
     from toongeo.model.expression_schemes import EXPRESSIONS
 
     assert len(json.dumps(dict.fromkeys(EXPRESSIONS, float(np.pi)))) < LARGEST / 4

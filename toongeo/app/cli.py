@@ -213,7 +213,7 @@ def _drive(options: argparse.Namespace) -> None:
 
 
 def _serve(options: argparse.Namespace) -> None:
-    from toongeo.app.serve import serve
+    from toongeo.app.live.serve import serve
 
     serve(options.avatar, weights=options.weights, port=options.port, loop=options.loop, show=not options.no_open)
 

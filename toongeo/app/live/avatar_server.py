@@ -12,8 +12,8 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from toongeo.app.glb_page import glb_page, read_avatar_glb, target_names
+from toongeo.app.live.read_message import read_message
 from toongeo.app.loopback import HOST, refusal
-from toongeo.app.read_message import read_message
 from toongeo.driving.websockets_adapter import load_websockets
 
 __all__ = ["AvatarServer", "LARGEST", "PAGE", "acknowledged"]

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from tests.app.running import running
-from toongeo.app.avatar_server import LARGEST, PAGE, AvatarServer, acknowledged
+from toongeo.app.live.avatar_server import LARGEST, PAGE, AvatarServer, acknowledged
+from toongeo.app.live.read_message import read_message
 from toongeo.app.loopback import HOST
-from toongeo.app.read_message import read_message
 from toongeo.driving import Take, send_weights
 from toongeo.driving.websockets_adapter import load_websockets
 from toongeo.model.expression_schemes import EXPRESSIONS

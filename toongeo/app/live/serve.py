@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from toongeo.app.avatar_server import AvatarServer
+from toongeo.app.live.avatar_server import AvatarServer
 from toongeo.app.read_take import read_take
 from toongeo.driving import Take
 from toongeo.model.expression_schemes import EXPRESSIONS
