@@ -159,7 +159,7 @@ def test_a_head_gets_its_targets(head, capsys):
         ({"mesh": "skin.ply"}, "path: expected a mesh file, but"),
         ({"-o": "head.fbx"}, "output: expected a name that ends in .glb"),
         ({"-o": "no/folder/head.glb"}, "output: no folder"),
-        ({"--landmarks": "skin.png"}, "path: expected JSON"),
+        ({"--landmarks": "skin.png"}, "path: expected .json, .ljson, .pp, .txt or .csv"),
         ({"mesh": "bare.obj", "--texture": "skin.png"}, "texture: expected a mesh with texture coordinates"),
         ({"mesh": "bare.obj"}, "expected a vertex in 0..2"),
     ],

@@ -46,7 +46,8 @@ def method_errors(
     dict of method to dict of column to float
         In the order of the tables; "photometric" is the last column.
     """
-    avatar = make_avatar(img, landmarks, photometric=True)
+    # Without hair of its own, which would hide what the fit did.
+    avatar = make_avatar(img, landmarks, photometric=True, hair=False)
     coarse, crop = avatar.fit, face_crop(img, landmarks)
     mean = fit_3dmm(None, landmarks, regressor=lambda _img, _points: Coefficients(), refine=False)
     assert coarse.albedo is not None

@@ -75,7 +75,7 @@ def pair_sheets(folder: Path, output: Path, *, seed: int = 0, against: str = "co
 
 def _rivals(img: Bytes, landmarks: Floats, against: str) -> tuple[Avatar, Avatar]:
     """Ours and the baseline, both from the landmarks alone, as `make_avatar` is by default."""
-    ours = make_avatar(img, landmarks)
+    ours = make_avatar(img, landmarks, hair=False)  # the rival has none either
     fit = fit_3dmm(img, landmarks)
     if against == "adjust":
         fit = adjust_coefficients(fit, landmarks, "identity+expression")
