@@ -64,6 +64,7 @@ from toongeo.pipeline import RidgeRegressor as RidgeRegressor
 from toongeo.pipeline import Rig as Rig
 from toongeo.pipeline import SolverOptions as SolverOptions
 from toongeo.pipeline import adjust_coefficients as adjust_coefficients
+from toongeo.pipeline import aim_eyes as aim_eyes
 from toongeo.pipeline import align_face as align_face
 from toongeo.pipeline import bake_eyes as bake_eyes
 from toongeo.pipeline import bake_texture as bake_texture
@@ -74,6 +75,7 @@ from toongeo.pipeline import detect_faces as detect_faces
 from toongeo.pipeline import detect_landmarks as detect_landmarks
 from toongeo.pipeline import diffuse_texture as diffuse_texture
 from toongeo.pipeline import find_hair as find_hair
+from toongeo.pipeline import find_irises as find_irises
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_3dmm_together as fit_3dmm_together
 from toongeo.pipeline import fit_eyes as fit_eyes

@@ -49,6 +49,20 @@ def test_hair_is_seen_in_pictures(worn, bald):
     assert len(head.faces) == len(worn.faces)
 
 
+def test_trimesh_gets_the_hair_as_it_is(worn):
+    scene = worn.to_trimesh({"jawOpen": 0.6, "eyeLookUpLeft": 1.0}, textured=False)
+    assert set(scene.geometry) == {"head", "teeth", "tongue", "eye_left", "eye_right", "hair"}
+    np.testing.assert_allclose(scene.geometry["hair"].vertices, worn.hair.vertices, atol=1e-9)
+    np.testing.assert_array_equal(scene.geometry["hair"].faces, worn.hair.faces)
+    np.testing.assert_allclose(scene.geometry["eye_right"].vertices, worn.eye_vertices(1), atol=1e-9)
+
+
+@pytest.mark.parametrize("hair", [np.ones((4, 4), bool), "hair.png", None])
+def test_what_is_no_modeler_is_refused(picture, hair):
+    with pytest.raises(ValueError, match="hair: expected True, False or a HairModeler, got .*hair_mask="):
+        tg.make_avatar(*picture, hair=hair)
+
+
 def test_no_painted_hair_under_hair(worn, bald):
     """The forehead's texels under the shell are as light as the skin, not brown."""
     model = worn.face.model

@@ -93,6 +93,6 @@ def _titled(view: np.ndarray, title: str) -> np.ndarray:
 def _words(lines: list[str], tile: int) -> np.ndarray:
     view = np.full((tile, tile, 3), _PAPER, np.uint8)
     for i, line in enumerate(lines):
-        at = (round(0.025 * tile), round((0.07 + 0.052 * i) * tile))
+        at = (round(0.025 * tile), round((0.06 + 0.92 * i / len(lines)) * tile))
         cv2.putText(view, line, at, cv2.FONT_HERSHEY_SIMPLEX, 0.0012 * tile, _INK, 1, cv2.LINE_AA)
     return view

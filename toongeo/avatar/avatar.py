@@ -166,7 +166,8 @@ class Avatar(AvatarStages):
         Returns
         -------
         trimesh.Scene
-            Geometries ``head``, ``teeth``, ``tongue``, ``eye_left`` and ``eye_right``; mm, model frame.
+            Geometries ``head``, ``teeth``, ``tongue``, ``eye_left``, ``eye_right`` and ``hair``, as far as there are such;
+            mm, model frame.
 
         Raises
         ------

@@ -13,6 +13,7 @@ from toongeo.avatar.scene import avatar_scene, head_parts
 from toongeo.avatar.stages import AvatarStages
 from toongeo.geometry import vertex_normals
 from toongeo.io import Scene, trimesh_scene
+from toongeo.model.anatomy.parts import SIDES
 
 if TYPE_CHECKING:
     import trimesh
@@ -30,11 +31,11 @@ def avatar_trimesh(
     for name, kept in head_parts(model, crop).items():
         used = np.unique(model.faces[kept])
         posed[name] = {"vertices": head[used], "normals": normals[used]}
+    eyeballs = {f"eye_{side}": V for side, V in zip(SIDES, eyes, strict=False)}
     meshes = []
     for mesh in avatar_scene(avatar, crop=crop).meshes:
-        if mesh.name in posed:
-            moved = posed[mesh.name]
-        else:
-            moved = {"vertices": eyes[mesh.name == "eye_right"], "normals": None}
+        moved = posed.get(mesh.name, {})  # hair is rigid on the skull
+        if mesh.name in eyeballs:
+            moved = {"vertices": eyeballs[mesh.name], "normals": None}
         meshes.append(replace(mesh, **moved, targets=None, target_names=()))
     return trimesh_scene(Scene(tuple(meshes)), textured=textured)

@@ -121,7 +121,7 @@ def make_avatar(
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, no face was found where none are
-        given, or method or rig is unknown.
+        given, or method, rig or hair is unknown.
     """
     align = _ALIGNERS.get(method)
     if align is None:
@@ -130,6 +130,10 @@ def make_avatar(
     check_size(texture_size)
     if rig not in ("transfer", "caricature"):
         raise ValueError(f"rig: expected 'transfer' or 'caricature', got {rig!r}")
+    if not (isinstance(hair, bool) or callable(hair)):
+        raise ValueError(
+            f"hair: expected True, False or a HairModeler, got {type(hair).__name__}; masks are hair_mask="
+        )
     clock = _Clock(progress)
 
     clock.start("fit")

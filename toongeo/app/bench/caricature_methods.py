@@ -67,7 +67,7 @@ def arap_fit(face: FoundFace, model: MorphableModel, landmarks: Floats) -> Linea
     Parts without a landmark, teeth and tongue, stay.
     """
     names = TEETH_AND_TONGUE
-    loose = np.any([model.region(name) for name in names if name in model.regions], axis=0)
+    loose = np.any([model.region(name) for name in names], axis=0)
     kept, seen = np.flatnonzero(~loose), np.isfinite(landmarks).all(axis=1)
     F = np.searchsorted(kept, model.faces[~loose[model.faces].any(axis=1)])
     anchors, first = np.unique(face.landmark_vertices[seen], return_index=True)

@@ -93,7 +93,7 @@ def _face_space(model: MorphableModel) -> FaceSpace:
 
 def _skin(model: MorphableModel) -> NDArray[np.int64]:
     """Vertices in triangles that belong to no inner part."""
-    inner = np.any([model.region(name) for name in INNER_PARTS if name in model.regions], axis=0)
+    inner = np.any([model.region(name) for name in INNER_PARTS], axis=0)
     return np.unique(model.faces[~inner[model.faces].any(axis=1)])
 
 

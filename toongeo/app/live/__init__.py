@@ -1,0 +1,1 @@
+"""The page that moves while weights come in."""
