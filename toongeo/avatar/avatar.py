@@ -166,7 +166,7 @@ class Avatar(AvatarStages):
         Returns
         -------
         trimesh.Scene
-            Geometries ``head``, ``teeth``, ``tongue``, ``eye_left``, ``eye_right`` and ``hair``, as far as there are such;
+            Geometries ``head``, ``teeth``, ``tongue``, ``eye_left``, ``eye_right`` and ``hair``, as far as they exist;
             mm, model frame.
 
         Raises
