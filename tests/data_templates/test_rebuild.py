@@ -10,6 +10,8 @@ import pytest
 
 from toongeo.model import data_path
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 
 

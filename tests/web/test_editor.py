@@ -1,6 +1,7 @@
 """The landmark editor in a real browser: what is dragged, what follows, what is saved, and whom it talks to."""
 
 import numpy as np
+import pytest
 
 from tests.app.editor.serving import serving
 from tests.web.editing import (
@@ -22,6 +23,8 @@ from tests.web.editing import (
 from toongeo.io import read_landmarks, write_landmarks
 from toongeo.model.ibug68 import MIRROR, PARTS
 from toongeo.pipeline.align.symmetric_field import FieldPrior, most_likely_field
+
+pytestmark = pytest.mark.slow
 
 ROUNDED = 0.006  # px: places are kept to a hundredth
 

@@ -9,6 +9,8 @@ from tests.web.editing import POINTS, READY, SCALE, SELECTED, TRUTH, a_picture, 
 from toongeo.io import write_landmarks
 from toongeo.model.ibug68 import PARTS
 
+pytestmark = pytest.mark.slow
+
 INSIDE = """[...document.querySelectorAll('.top button, .top select, .bar button')]
   .filter((part) => part.offsetParent)
   .map((part) => part.getBoundingClientRect())

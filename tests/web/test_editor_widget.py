@@ -11,6 +11,8 @@ import pytest
 
 from tests.web.editing import TRUTH, results
 
+pytestmark = pytest.mark.slow
+
 PAGE = """<!doctype html><html lang="en"><title>Notebook</title>
 <link rel="stylesheet" href="./editor.css"><body><main id="one"></main><main id="two"></main>
 <script type="module">

@@ -29,6 +29,7 @@ def rows_of(path):
         return list(csv.DictReader(stream))
 
 
+@pytest.mark.slow
 def test_table1_prints_and_writes_coarse_and_fine(folder, tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["bench", "table1", str(folder), "-o", str(out)]) == 0
@@ -46,6 +47,7 @@ def test_table1_prints_and_writes_coarse_and_fine(folder, tmp_path, capsys):
     assert read_image(out / "table1.png").std() > 10
 
 
+@pytest.mark.slow
 def test_errors_do_not_depend_on_the_resolution(cartoon):
     img, landmarks = cartoon("blue_girl")
     twice = cv2.resize(img, None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC)
@@ -67,6 +69,7 @@ def test_table2_prints_what_adjusting_reaches(folder, capsys):
     assert lines[-1].startswith("total, paper: adjust exp 143.38, adjust id+exp 110.70, fine 37.44")
 
 
+@pytest.mark.slow
 def test_table4_adds_up(folder, tmp_path, capsys):
     (folder / "moustache_man.png").unlink()
     assert main(["bench", "table4", str(folder), "-o", str(tmp_path)]) == 0
@@ -96,6 +99,7 @@ def test_caricature_compares_the_baselines(folder, tmp_path, capsys, monkeypatch
     assert "paper, Table 1" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_pairs_are_blind_and_score_goes_the_whole_way(folder, tmp_path, capsys):
     out = tmp_path / "pairs"
     assert main(["bench", "pairs", str(folder), "-o", str(out), "--seed", "7"]) == 0
