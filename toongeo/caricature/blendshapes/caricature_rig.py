@@ -27,6 +27,7 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.build_rig import build_rig
 from toongeo.pipeline.rig.rig import Rig, RigReport
+from toongeo.pipeline.rig.split_gaze import split_gaze
 from toongeo.protocols import LandmarkMapper
 
 __all__ = ["caricature_rig"]
@@ -90,12 +91,15 @@ def caricature_rig(
     best += share * (restore_similarities(best, D_normal) - best)
     deltas = _with_inner_parts(space, face, best)
     pose = weights_of_expression(initial.normal.expression, model)
-    pose[[name.startswith(_TRAITS) for name in model.expression_names[: model.n_named]]] = 0.0
+    named = model.expression_names[: model.n_named]
+    pose[[name.startswith(_TRAITS) for name in named]] = 0.0
+    names, deltas, gaze = split_gaze(named, deltas)
+    pose = pose[[name in names for name in named]]
     return Rig(
-        names=model.expression_names[: model.n_named],
+        names=names,
         neutral=face.vertices - np.tensordot(pose, deltas.astype(np.float64), 1),
         deltas=deltas,
-        gaze=np.zeros((len(GAZE_NAMES), *face.vertices.shape), np.float32),
+        gaze=gaze,
         pose=pose,
         report=RigReport(time.perf_counter() - started),
     )
@@ -103,10 +107,12 @@ def caricature_rig(
 
 def _with_inner_parts(space: FaceSpace, face: AlignedFace, D: Floats) -> NDArray[np.float32]:
     """Deltas (k, n, 3) of the whole face for those (k, v, 3) of the skin."""
-    transferred = build_rig(face).deltas
-    deltas = np.empty(transferred.shape, np.float32)
+    rig = build_rig(face)
+    transferred = {**dict(zip(rig.names, rig.deltas, strict=True)), **dict(zip(GAZE_NAMES, rig.gaze, strict=True))}
+    names = face.model.expression_names[: face.model.n_named]
+    deltas = np.empty((len(names), *face.vertices.shape), np.float32)
     skin = face.vertices[space.vertices]
-    for k, moved in enumerate(D):
-        V = with_inner_parts(space, face.vertices + transferred[k], skin + moved, tuck=False)
+    for k, (name, moved) in enumerate(zip(names, D, strict=True)):
+        V = with_inner_parts(space, face.vertices + transferred[name], skin + moved, tuck=False)
         deltas[k] = V - face.vertices
     return deltas
