@@ -6,8 +6,8 @@ usage: python benchmarks/mutation.py --map [TESTS ...]
 
 Faults are those of `mutants.py`, a seeded sample of all there are. Each runs in a copy of the tree, never in the
 checkout: first the tests that mirror the file and its doctests, then those which the map says reach its line, the
-fastest first, then the folder of tests that mirrors its own. The first failing test ends it. `--map` runs tests once
-with coverage (pytest-cov) and writes down which reach what, in the work folder; without a map that step is left out.
+fastest first, then the results on record. The first failing test ends it. `--map` runs tests once with coverage
+(pytest-cov) and writes down which reach what, in the work folder; without a map the mirrored folder of tests is asked.
 The log has a line for each fault; what is in it is not run again, so a run can be broken off and go on.
 """
 
@@ -32,7 +32,8 @@ from mutants import Mutant, mutants
 ROOT = Path(__file__).resolve().parents[1]
 PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n0", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE"]
 PYTEST += ["-m", ""]  # the slow ones too
-SURE = 60.0  # seconds of tests by the map that are tried; what then lives is mostly caught by none
+SURE = 20.0  # seconds of tests by the map that are tried; what then lives is mostly caught by none
+RECORD = ["-m", "not slow", "tests/golden"]
 WALL = 20  # a machine may be busy: the limit is one of CPU seconds, that of the wall clock so many times as long
 FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.M)
 DURATION = re.compile(r"^([\d.]+)s (?:call|setup)\s+(.+)$", re.M)
@@ -87,6 +88,11 @@ class TestMap:
             self._data.read()
         self._seconds = json.loads(self._times.read_text()) if self._times.exists() else {}
 
+    @property
+    def complete(self) -> bool:
+        """Whether tests were mapped."""
+        return self._data is not None
+
     def gather(self, tests: list[str]) -> None:
         """Run tests once, on all cores, and write down what they reach and how long they take."""
         command = [sys.executable, "-m", "pytest", "-q", "--cov=toongeo", "--cov-context=test", "--cov-report="]
@@ -126,8 +132,8 @@ def stages(path: str, mutant: Mutant, tree: Tree, known: TestMap) -> list[list[s
         folder = folder.parent
     return [
         [str(mirror), path] if (tree.root / mirror).exists() else [path],
-        known.reaching(path, mutant.line),
-        [str(folder)],
+        known.reaching(path, mutant.line) if known.complete else [str(folder)],
+        RECORD,
     ]
 
 
