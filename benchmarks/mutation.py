@@ -32,7 +32,7 @@ from mutants import Mutant, mutants
 ROOT = Path(__file__).resolve().parents[1]
 PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n0", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE"]
 PYTEST += ["-m", ""]  # the slow ones too
-SURE = 20.0  # seconds of tests by the map that are tried; what then lives is mostly caught by none
+SURE = 10.0  # seconds of tests by the map that are tried; what then lives is mostly caught by none
 RECORD = ["-m", "not slow", "tests/golden"]
 WALL = 20  # a machine may be busy: the limit is one of CPU seconds, that of the wall clock so many times as long
 FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.M)
