@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.model.expression_schemes import EXPRESSIONS
 
@@ -35,6 +36,9 @@ class Take:
     weights: Floats
     head: Floats | None = None
     notes: tuple[str, ...] = ()
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         f = len(self.times)
