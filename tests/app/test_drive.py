@@ -11,7 +11,7 @@ import pytest
 
 from tests.driving.conftest import film, rms
 from toongeo.app.cli import main
-from toongeo.app.read_take import read_take
+from toongeo.app.read_take import read_landmark_take, read_take
 from toongeo.app.write_video import write_video
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
@@ -94,13 +94,35 @@ def test_arrays_of_weights(tmp_path):
     wanted = [EXPRESSIONS.index(name) for name in list(SCHEMES["arkit"])[:3]]
     np.testing.assert_array_equal(read_take(arkit, 10).weights, np.eye(54)[wanted])
     np.testing.assert_allclose(read_take(arkit, 10).times, [0, 0.1, 0.2])
+    np.save(own, 80.0 * np.eye(54)[:3])
+    np.testing.assert_allclose(read_take(own).weights, 0.8 * np.eye(54)[:3])
+    assert read_take(own).notes == ("weights of up to 80 were taken for percent",)
+
+
+def test_frames_of_landmarks_without_a_face_are_held(tmp_path, avatar):
+    weights = np.zeros((8, 46))
+    weights[:, avatar.names.index("jawOpen")] = 0.5 * np.sin(np.arange(8))
+    points = film(avatar, weights)
+    path = tmp_path / "points.npy"
+    lost = points.copy()
+    lost[[0, 5]] = np.nan
+    np.save(path, lost)
+    expected = read_landmark_take(path)
+    lost[[0, 5]] = 0.0  # as programs write a face that they did not see
+    np.save(path, lost)
+    take = read_landmark_take(path)
+    np.testing.assert_array_equal(take.weights, expected.weights)
+    assert take.notes == expected.notes == ("2 of 8 frames show no face and were held",)
+    np.save(path, np.zeros((3, 68, 2)))
+    with pytest.raises(ValueError, match="points.npy: expected a face in at least one frame, got none in 3"):
+        read_landmark_take(path)
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
         ({"--weights": "none.csv"}, "none.csv"),
-        ({"--weights": "broken.csv"}, "51 of 52 columns are missing"),
+        ({"--weights": "broken.csv"}, "expected columns named like ARKit's expressions, got Jaw"),
         ({"--weights": "broken.npy"}, "broken.npy: expected an array of numbers"),
         ({"--weights": "take.txt"}, "weights: expected a .csv or .npy file"),
         ({"-o": "take.avi"}, "output: expected a name that ends in .mp4, .glb, .csv"),
@@ -116,7 +138,7 @@ def test_arrays_of_weights(tmp_path):
 )
 def test_bad_input_is_one_line_and_no_file(glb, take, tmp_path, monkeypatch, capsys, change, message):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "broken.csv").write_text("JawOpen\n0\n")
+    (tmp_path / "broken.csv").write_text("Jaw\n0\n")
     (tmp_path / "broken.npy").write_bytes(b"\x93NUMPY broken")
     (tmp_path / "cut.glb").write_bytes(glb.read_bytes()[:5000])
     for name in ("folder.mp4", "folder.glb"):

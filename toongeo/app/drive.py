@@ -1,5 +1,6 @@
 """``toongeo drive``: a performance on the face of an avatar, as a video, a GLB that plays it, or a table."""
 
+import sys
 from pathlib import Path
 
 from toongeo.app.check_output import check_output
@@ -41,6 +42,8 @@ def drive(avatar: Path, output: Path, source: TakeSource, *, size: int = _SIZE, 
         raise ValueError(f"output: expected a name that ends in {', '.join(_OUTPUTS)}, got {output}")
     check_output(output, {"avatar": avatar, **source.files})
     take = source.take().resampled(fps)
+    for note in take.notes:
+        print(f"note: {note}", file=sys.stderr)
     face = load_avatar(avatar)
     if suffix == ".glb":
         face.save(output, animation=(take.times, take.weights))
