@@ -3,12 +3,24 @@
 ``python -m tests.golden.results`` writes them down anew: when results are meant to change, after looking at the heads.
 """
 
+import sys
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from toongeo import bake_texture, detect_landmarks, edit_expression, find_irises, make_avatar
+from toongeo import (
+    bake_texture,
+    detect_landmarks,
+    edit_expression,
+    find_irises,
+    fit_3dmm,
+    make_avatar,
+    parse_face,
+    photometric_fit,
+    snap_eyes,
+)
+from toongeo.caricature import fit_caricature
 from toongeo.io import read_image, read_landmarks
 
 FOLDER = Path(__file__).parent
@@ -17,50 +29,87 @@ EDITS = {"mouthSmileLeft": 0.8, "jawOpen": 0.4, "eyeBlinkLeft": 1.0}
 _STEP = 12  # every so many vertices are kept
 
 
+def detection(img, landmarks):
+    found = detect_landmarks(img)
+    return {"points_px": found.points, "confidence": np.r_[found.confidence, found.score]}
+
+
+def fit(img, landmarks):
+    fit = fit_3dmm(img, landmarks)
+    lit = photometric_fit(img, fit, landmarks)
+    return {
+        "vertices_mm": fit.vertices[::_STEP],
+        "points_px": fit.project(fit.vertices[fit.landmark_vertices]),
+        "lit.vertices_mm": lit.vertices[::_STEP],
+        "lit.weights": np.r_[lit.albedo, lit.light.ravel()],
+    }
+
+
+def parse(img, landmarks):
+    parse = parse_face(img, landmarks, fit_3dmm(img, landmarks))
+    hair = parse.hair
+    alpha = hair.mask if hair.alpha is None else hair.alpha
+    hat = np.zeros_like(hair.mask) if hair.hat is None else hair.hat
+    return {
+        "labels": parse.labels,
+        "share.weights": small(parse.confidence),
+        "hair.weights": small(alpha.astype(np.float32)),
+        "hat.weights": small(hat.astype(np.float32)),
+        "trusted.weights": np.array([hair.trusted]),
+        "eyes_px": snap_eyes(landmarks, parse)[36:48],
+        "irises_px": np.array([np.r_[i.centre, i.radii] for i in find_irises(img, landmarks) if i is not None]),
+    }
+
+
+def head(img, landmarks):
+    avatar = make_avatar(img, landmarks)
+    face, eyes, hair = avatar.face, avatar.eyes, avatar.hair
+    values = {
+        "aligned_mm": face.vertices[::_STEP],
+        "neutral_mm": avatar.rig.neutral[::_STEP],
+        "deltas_mm": avatar.rig.deltas[:, :: 2 * _STEP],
+        "gaze_mm": avatar.rig.gaze[:, :: 2 * _STEP],
+        "pose.weights": np.r_[avatar.rig.pose, eyes.pose, eyes.turn.ravel() / 90],
+        "eyeballs_mm": np.c_[eyes.centres, eyes.radii],
+        "texture.levels": small(avatar.texture),
+        "diffused.levels": small(bake_texture(img, face, size=256)),
+        "seen.levels": small(avatar.render(avatar.pose, size=96)),
+    }
+    if hair is not None:
+        values |= {"hair.surface_mm": hair.vertices[::4], "strands.levels": small(hair.texture)}
+    return values
+
+
+def drawing(img, landmarks):
+    fitted = fit_caricature(img, landmarks)
+    return {
+        "edit.levels": small(edit_expression(img, landmarks, EDITS)),
+        "caricature_mm": fitted.vertices[::_STEP],
+    }
+
+
+STAGES = {stage.__name__: stage for stage in (detection, fit, parse, head, drawing)}
+
+
 def picture(name):
     """A bundled picture and its landmarks."""
     return read_image(PORTRAITS / f"{name}.png"), read_landmarks(PORTRAITS / f"{name}.pts")
 
 
-def results(avatar, img, landmarks):
-    """``stage.key`` -> array."""
-    fit, face, eyes, hair = avatar.fit, avatar.face, avatar.eyes, avatar.hair
-    found = detect_landmarks(img)
-    irises = [iris for iris in find_irises(img, landmarks) if iris is not None]
-    whole = {
-        "detection.points_px": found.points,
-        "detection.confidence": np.r_[found.confidence, found.score],
-        "fit.vertices_mm": fit.vertices[::_STEP],
-        "fit.points_px": fit.project(fit.vertices[fit.landmark_vertices]),
-        "parse.labels": avatar.parse.labels,
-        "align.vertices_mm": face.vertices[::_STEP],
-        "rig.neutral_mm": avatar.rig.neutral[::_STEP],
-        "rig.deltas_mm": avatar.rig.deltas[:, :: 2 * _STEP],
-        "rig.weights": avatar.rig.pose,
-        "eyes.places_mm": np.c_[eyes.centres, eyes.radii],
-        "eyes.weights": np.r_[eyes.pose, eyes.turn.ravel() / 90],
-        "irises.ellipses_px": np.array([np.r_[iris.centre, iris.radii] for iris in irises]).reshape(-1, 4),
-        "texture.levels": small(avatar.texture),
-        "texture.plain_levels": small(bake_texture(img, face, size=256)),
-        "edit.levels": small(edit_expression(img, landmarks, EDITS)),
-    }
-    if hair is not None:
-        whole |= {"hair.surface_mm": hair.vertices[::_STEP], "hair.levels": small(hair.texture)}
-    return {key: np.asarray(value) for key, value in whole.items()}
-
-
 def small(img):
-    """A picture of 48 pixels a side, in levels."""
+    """A picture of 48 pixels a side."""
     return cv2.resize(img, (48, 48), interpolation=cv2.INTER_AREA)
 
 
-def record(path, values):
-    """Write results in as few bytes as their tolerance allows."""
-    rounded = {key: value if value.dtype == np.uint8 else value.astype(np.float32) for key, value in values.items()}
-    np.savez_compressed(path, **rounded)
+def path_of(stage, name):
+    return FOLDER / "records" / f"{name}_{stage}.npz"
 
 
 if __name__ == "__main__":
-    for path in sorted(PORTRAITS.glob("*.png")):
-        img, landmarks = picture(path.stem)
-        record(FOLDER / f"{path.stem}.npz", results(make_avatar(img, landmarks), img, landmarks))
+    for stage in sys.argv[1:] or STAGES:
+        for name in sorted(path.stem for path in PORTRAITS.glob("*.png")):
+            values = STAGES[stage](*picture(name))
+            values = {
+                key: value if value.dtype == np.uint8 else value.astype(np.float32) for key, value in values.items()
+            }
+            np.savez_compressed(path_of(stage, name), **values)
