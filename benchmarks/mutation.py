@@ -8,7 +8,8 @@ Faults are those of `mutants.py`, a seeded sample of all there are. Each runs in
 checkout: first the tests that mirror the file and its doctests, then those which the map says reach its line, the
 fastest first, then the results on record. The first failing test ends it. `--map` runs tests once with coverage
 (pytest-cov) and writes down which reach what, in the work folder; without a map the mirrored folder of tests is asked.
-The log has a line for each fault; what is in it is not run again, so a run can be broken off and go on.
+The log has a line for each fault; what is in it is not run again, so a run can be broken off and go on. `--again` runs
+those that survived once more, when tests were added.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ import tempfile
 import time
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 from mutants import Mutant, mutants
 
@@ -33,7 +35,8 @@ ROOT = Path(__file__).resolve().parents[1]
 PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n0", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE"]
 PYTEST += ["-m", ""]  # the slow ones too
 SURE = 10.0  # seconds of tests by the map that are tried; what then lives is mostly caught by none
-RECORD = ["-m", "not slow", "tests/golden"]
+# Which results on record a fault in a folder can change, as pytest's -k says it.
+RECORDS = {"landmarks": "detection", "fit": "fit", "parse": "parse", "geometry": "fit or head", "render": "head"}
 WALL = 20  # a machine may be busy: the limit is one of CPU seconds, that of the wall clock so many times as long
 FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.M)
 DURATION = re.compile(r"^([\d.]+)s (?:call|setup)\s+(.+)$", re.M)
@@ -130,10 +133,11 @@ def stages(path: str, mutant: Mutant, tree: Tree, known: TestMap) -> list[list[s
     folder = mirror.parent
     while not (tree.root / folder).is_dir():
         folder = folder.parent
+    record = next((RECORDS[part] for part in inside.parts if part in RECORDS), "head or drawing")
     return [
         [str(mirror), path] if (tree.root / mirror).exists() else [path],
         known.reaching(path, mutant.line) if known.complete else [str(folder)],
-        RECORD,
+        ["tests/golden", "-k", record],
     ]
 
 
@@ -169,9 +173,15 @@ def sample(root: Path, paths: list[str], count: int, seed: int) -> list[tuple[st
     return random.Random(seed).sample(every, min(count, len(every)))
 
 
+def logged(log: Path) -> list[dict[str, Any]]:
+    """The last line of each fault."""
+    lines = map(json.loads, log.read_text().splitlines() if log.exists() else ())
+    return list({line["id"]: line for line in lines}.values())
+
+
 def report(log: Path) -> str:
     """Rate of the killed, by folder and kind, and the survivors."""
-    rows = [json.loads(line) for line in log.read_text().splitlines()]
+    rows = logged(log)
     if not rows:
         return "no faults yet"
     dead = [row["status"] != "survived" for row in rows]
@@ -202,6 +212,7 @@ def main() -> None:
     parser.add_argument(
         "--part", default="0/1", metavar="K/N", help="every n-th fault from the k-th: processes share a log"
     )
+    parser.add_argument("--again", action="store_true", help="run those that survived again")
     parser.add_argument("--report", action="store_true", help="only print what the log holds")
     options = parser.parse_args()
     options.log = options.log or options.work / "mutation.jsonl"
@@ -214,7 +225,7 @@ def main() -> None:
     if options.map is not None:
         known.gather(options.map)
         return
-    done = {json.loads(line)["id"] for line in options.log.read_text().splitlines()} if options.log.exists() else set()
+    done = {row["id"] for row in logged(options.log) if not (options.again and row["status"] == "survived")}
     first, step = map(int, options.part.split("/"))
     for path, mutant in sample(tree.root, options.paths, options.sample, options.seed)[first::step]:
         name = f"{path}:{mutant.start}:{mutant.stop}:{mutant.after}"

@@ -169,6 +169,12 @@ def test_a_head_too_small_to_cut_is_refused(size):
         ClassicalParser(head_px=size)
 
 
+def test_the_smallest_head():
+    assert ClassicalParser(head_px=64).head_px == 64
+    with pytest.raises(ValueError, match="head_px: expected at least 64, got 63.9"):
+        ClassicalParser(head_px=63.9)
+
+
 def test_arguments_are_not_written_to(drawn_face):
     img, landmarks = drawn_face.img.copy(), drawn_face.landmarks.copy()
     parse_face(img, landmarks)

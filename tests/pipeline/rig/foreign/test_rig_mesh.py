@@ -136,6 +136,35 @@ def test_a_tooth_moves_with_its_row_and_does_not_bend(rng):
         np.testing.assert_allclose(pairs[0], pairs[1], atol=1e-12)
 
 
+@pytest.mark.parametrize("rows_below", [16, 10])
+def test_gums_of_both_rows_bend_unless_they_are_mostly_of_one(rows_below):
+    """A bar between two rows, of which one moves: each end follows its own, unless most of the bar is by one."""
+    bar = np.c_[np.linspace(0, 1, 16), np.zeros((16, 2))]
+    skin = np.c_[np.linspace(0, 1, 20), np.full((20, 2), 50.0)]
+    F = np.vstack([[(k, k + 1, k + 2) for k in range(18)], [(20 + k, 21 + k, 22 + k) for k in range(14)]])
+    below = np.repeat([True, False], [rows_below, 16 - rows_below])
+    rows = np.vstack([bar, bar + [0, 0, 9]])
+    of_row = np.r_[below, np.zeros(16, bool)], np.r_[~below, np.ones(16, bool)]
+    drop = np.array([[[0.0, -2, 0]]]) * of_row[0][:, None]
+    within = MouthParts(rows, drop, np.ones(32, bool), of_row)
+    found = settle_loose_parts(
+        np.vstack([skin, bar]), F, np.full((68, 3), np.nan), np.zeros((1, 36, 3)), np.arange(36) < 20, within
+    )
+    moved = np.ones(16, bool) if rows_below == 16 else below
+    np.testing.assert_allclose(found[0, 20:], [0, -2, 0] * moved[:, None], atol=1e-12)
+
+
+def test_what_is_mostly_outside_the_mouth_is_not_in_it(rng):
+    """A part of which a third is nearest to the mouth bends with the skin around it."""
+    skin, part = rng.normal(size=(20, 3)), np.c_[np.arange(9.0) + 20, np.zeros((9, 2))]
+    F = np.vstack([[(k, k + 1, k + 2) for k in range(18)], [(20 + k, 21 + k, 22 + k) for k in range(7)]])
+    mouth = np.arange(9) < 3
+    within = MouthParts(part, np.ones((1, 9, 3)), mouth, (mouth,))
+    shapes = np.zeros((1, 29, 3))
+    found = settle_loose_parts(np.vstack([skin, part]), F, np.full((68, 3), np.nan), shapes, np.arange(29) < 20, within)
+    assert not found.any()
+
+
 def test_a_lash_moves_as_the_lid_it_grows_on():
     """A strip that stands on the edge of a plate and leans over it: all of it moves as the edge."""
     x, y = np.meshgrid(np.linspace(0, 4, 5), np.linspace(0, 8, 9), indexing="ij")
