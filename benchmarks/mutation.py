@@ -36,7 +36,7 @@ PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n0", "-p", "no:cacheprov
 PYTEST += ["-m", ""]  # the slow ones too
 SURE = 10.0  # seconds of tests by the map that are tried; what then lives is mostly caught by none
 # Which results on record a fault in a folder can change, as pytest's -k says it.
-RECORDS = {"landmarks": "detection", "fit": "fit", "parse": "parse", "geometry": "fit or head", "render": "head"}
+RECORDS = {"landmarks": "detection", "fit": "fit", "parse": "parse", "texture": "head or drawing"}
 WALL = 20  # a machine may be busy: the limit is one of CPU seconds, that of the wall clock so many times as long
 FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.M)
 DURATION = re.compile(r"^([\d.]+)s (?:call|setup)\s+(.+)$", re.M)
@@ -126,22 +126,22 @@ class TestMap:
         return chosen
 
 
-def stages(path: str, mutant: Mutant, tree: Tree, known: TestMap) -> list[list[str]]:
-    """Tests that concern a fault, in the order in which they are asked."""
+def stages(path: str, mutant: Mutant, tree: Tree, known: TestMap | None) -> list[list[str]]:
+    """Tests that concern a fault, in the order in which they are asked; without a map only those written for it."""
     inside = Path(path).relative_to("toongeo")
     mirror = Path("tests") / inside.parent / f"test_{inside.stem}.py"
     folder = mirror.parent
     while not (tree.root / folder).is_dir():
         folder = folder.parent
-    record = next((RECORDS[part] for part in inside.parts if part in RECORDS), "head or drawing")
+    record = next((RECORDS[part] for part in inside.parts if part in RECORDS), "head")
     return [
         [str(mirror), path] if (tree.root / mirror).exists() else [path],
-        known.reaching(path, mutant.line) if known.complete else [str(folder)],
+        [] if known is None else known.reaching(path, mutant.line) if known.complete else [str(folder)],
         ["tests/golden", "-k", record],
     ]
 
 
-def verdict(path: str, mutant: Mutant, tree: Tree, known: TestMap, limit: float) -> dict[str, object]:
+def verdict(path: str, mutant: Mutant, tree: Tree, known: TestMap | None, limit: float) -> dict[str, object]:
     """What became of a fault: killed by a test or by the clock, or survived."""
     file = tree.root / path
     source = file.read_bytes()
@@ -221,10 +221,10 @@ def main() -> None:
         return
     options.work.mkdir(parents=True, exist_ok=True)
     tree = Tree(options.work.resolve())
-    known = TestMap(tree)
     if options.map is not None:
-        known.gather(options.map)
+        TestMap(tree).gather(options.map)
         return
+    known = None if options.again else TestMap(tree)
     done = {row["id"] for row in logged(options.log) if not (options.again and row["status"] == "survived")}
     first, step = map(int, options.part.split("/"))
     for path, mutant in sample(tree.root, options.paths, options.sample, options.seed)[first::step]:
