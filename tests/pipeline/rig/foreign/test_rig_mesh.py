@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from toongeo.model.anatomy.rims import rim_path
-from toongeo.model.ibug68 import INNER
+from toongeo.model.ibug68 import INNER, MIRROR
 from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
 from toongeo.pipeline.rig.foreign.check_winding import check_winding
 from toongeo.pipeline.rig.foreign.close_gaps import _heights, close_gaps
@@ -134,6 +134,39 @@ def test_a_tooth_moves_with_its_row_and_does_not_bend(rng):
     for shape in settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(28) < 20, bent):
         pairs = [np.linalg.norm(x[:, None] - x, axis=2) for x in (tooth, tooth + shape[20:])]
         np.testing.assert_allclose(pairs[0], pairs[1], atol=1e-12)
+
+
+def test_an_inner_wall_follows_the_outer_one(rng):
+    """A sheet close behind another moves as it, place by place, and not as a part that stands on it."""
+    grid = np.stack(np.meshgrid(np.arange(10.0), np.arange(10.0)), 2).reshape(-1, 2) * 20
+    corner = np.add.outer(10 * np.arange(9), np.arange(9)).ravel()
+    sheet = np.vstack([np.c_[corner, corner + 1, corner + 10], np.c_[corner + 1, corner + 11, corner + 10]])
+    outer = np.c_[grid, np.zeros(100)]
+    V = np.vstack([outer, outer - [0, 0, 1.0]])
+    F = np.vstack([sheet, sheet[:, ::-1] + 100])
+    shapes = np.zeros((2, 200, 3))
+    shapes[:, :100] = 1e-4 * outer @ rng.normal(size=(2, 3, 3)) + rng.normal(0, 0.1, size=(2, 100, 3))
+    within = MouthParts(np.full((1, 3), 1e6), np.zeros((2, 1, 3)), np.zeros(1, bool), ())
+    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(200) < 100, within)
+    np.testing.assert_allclose(found[:, 100:], shapes[:, :100], atol=1e-12)
+
+
+def test_a_head_far_from_the_origin_keeps_its_rig(model):
+    near = rig_mesh(model.mean, model.faces, model.landmarks)
+    place = np.array([3e8, 5e9, 1e5])  # mm: a scan in the coordinates of a map
+    far = rig_mesh(model.mean + place, model.faces, model.landmarks)
+    apart = np.linalg.norm(far.deltas - near.deltas, axis=2)  # of what the digits that are left make of lips and lids
+    assert apart.mean() < 0.01 and np.quantile(apart, 0.99) < 0.2 and apart.max() < 3
+    np.testing.assert_array_equal(far.neutral, model.mean + place)
+
+
+@pytest.mark.parametrize("mirrored", ["landmarks", "mesh"])
+def test_exchanged_sides_are_refused(model, mirrored):
+    V = model.mean * ([-1, 1, 1] if mirrored == "mesh" else 1)
+    F = model.faces[:, ::-1] if mirrored == "mesh" else model.faces
+    points = V[model.landmarks[MIRROR] if mirrored == "landmarks" else model.landmarks]
+    with pytest.raises(ValueError, match="landmarks: left and right are exchanged, or the mesh is mirrored"):
+        rig_mesh(V, F, points)
 
 
 def test_a_lash_moves_as_the_lid_it_grows_on():
