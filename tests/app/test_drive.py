@@ -13,6 +13,8 @@ from tests.driving.conftest import film, rms
 from toongeo.app.cli import main
 from toongeo.app.read_take import read_landmark_take, read_take
 from toongeo.app.write_video import write_video
+from toongeo.driving import ScenePuppet
+from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, write_glb
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 LIVE_LINK = tuple(SCHEMES["live_link"])
@@ -71,6 +73,36 @@ def test_a_glb_plays_the_take(glb, take, tmp_path, node):
     halfway = clip["halfway"][report["meshes"].index(head)]
     assert halfway[head["targets"].index("jawOpen")] == pytest.approx(0.5, abs=1e-4)
     assert sum(map(abs, halfway)) == pytest.approx(0.5, abs=1e-4)
+
+
+@pytest.mark.parametrize("options", [{"names": "arkit"}, {"crop": "face"}, {"loadable": False}])
+def test_any_glb_with_named_targets_can_be_driven(avatar, take, tmp_path, options):
+    """Renamed, cut out, or without what is needed to load it: what moves are the targets, by their names."""
+    source, out = tmp_path / "face.glb", tmp_path / "out.glb"
+    avatar.save(source, **options)
+    assert main(["drive", str(source), "--weights", str(take), "-o", str(out)]) == 0
+    before, after = glb_scene(read_glb(source)), glb_scene(read_glb(out))
+    (head,) = (mesh for mesh in after.meshes if mesh.name == "head")
+    weights = after.animation.weights["head"]
+    np.testing.assert_allclose(weights[:, head.target_names.index("jawOpen")], np.linspace(0, 1, 16), atol=1e-6)
+    assert np.count_nonzero(weights) == 15
+    np.testing.assert_array_equal(before.meshes[0].vertices, after.meshes[0].vertices)
+    film = tmp_path / "out.mp4"
+    assert main(["drive", str(source), "--weights", str(take), "-o", str(film), "--size", "64", "--fps", "10"]) == 0
+    frames, _ = played(film)
+    puppet = ScenePuppet(after)
+    for k, frame in enumerate(frames):
+        errors = [np.abs(frame - puppet.render({"jawOpen": j / 5}, 64).astype(float)).mean() for j in range(6)]
+        assert int(np.argmin(errors)) == k
+
+
+def test_a_glb_without_expressions_is_told(tmp_path, take, capsys):
+    mesh = SceneMesh("box", np.eye(3), np.array([[0, 1, 2]]), targets=np.ones((1, 3, 3)), target_names=("Basis",))
+    write_glb(tmp_path / "box.glb", Scene((mesh,)))
+    arguments = ["drive", str(tmp_path / "box.glb"), "--weights", str(take), "-o", str(tmp_path / "out.glb")]
+    assert main(arguments) == 2
+    assert "box.glb: targets: expected names of ARKit's expressions, got Basis" in capsys.readouterr().err
+    assert not (tmp_path / "out.glb").exists()
 
 
 def test_landmarks_of_another_face_drive(glb, avatar, tmp_path):

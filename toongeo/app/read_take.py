@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver
-from toongeo.driving.unit_weights import unit_weights
+from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver, unit_weights
 from toongeo.io import read_landmark_frames, read_video
 from toongeo.model.expression_schemes import EXPRESSIONS
 

@@ -12,8 +12,8 @@ from toongeo.arrays import Floats
 from toongeo.driving.table.cells import read_table
 from toongeo.driving.table.expression_columns import expression_columns
 from toongeo.driving.table.times import frame_times
+from toongeo.driving.table.unit_weights import unit_weights
 from toongeo.driving.take import Take
-from toongeo.driving.unit_weights import unit_weights
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 __all__ = ["read_live_link", "scheme_matrix"]

@@ -66,3 +66,18 @@ def test_a_lash_moves_as_the_lid_it_grows_on():
     within = MouthParts(plate, shapes[:, :45], np.zeros(45, bool), ())
     found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(len(V)) < 45, within)
     np.testing.assert_array_equal(found[0, 45:], np.broadcast_to([0, -1.0, 0], (28, 3)))
+
+
+def test_an_inner_wall_follows_the_outer_one(rng):
+    """A sheet close behind another moves as it, place by place, and not as a part that stands on it."""
+    grid = np.stack(np.meshgrid(np.arange(10.0), np.arange(10.0)), 2).reshape(-1, 2) * 20
+    corner = np.add.outer(10 * np.arange(9), np.arange(9)).ravel()
+    sheet = np.vstack([np.c_[corner, corner + 1, corner + 10], np.c_[corner + 1, corner + 11, corner + 10]])
+    outer = np.c_[grid, np.zeros(100)]
+    V = np.vstack([outer, outer - [0, 0, 1.0]])
+    F = np.vstack([sheet, sheet[:, ::-1] + 100])
+    shapes = np.zeros((2, 200, 3))
+    shapes[:, :100] = 1e-4 * outer @ rng.normal(size=(2, 3, 3)) + rng.normal(0, 0.1, size=(2, 100, 3))
+    within = MouthParts(np.full((1, 3), 1e6), np.zeros((2, 1, 3)), np.zeros(1, bool), ())
+    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(200) < 100, within)
+    np.testing.assert_allclose(found[:, 100:], shapes[:, :100], atol=1e-12)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from toongeo.model.anatomy.rims import rim_path
-from toongeo.model.ibug68 import INNER
+from toongeo.model.ibug68 import INNER, MIRROR
 from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
 from toongeo.pipeline.rig.foreign.check_winding import check_winding
 from toongeo.pipeline.rig.foreign.close_gaps import _heights, close_gaps
@@ -165,3 +165,21 @@ def test_a_model_without_eyes_will_do(model):
     rig = rig_mesh(model.mean, front, model.landmarks, model=small)
     unused = np.setdiff1d(np.arange(len(model.mean)), front)
     assert not rig.deltas[:, unused].any() and rig.report.partnered > 0.9
+
+
+def test_a_head_far_from_the_origin_keeps_its_rig(model):
+    near = rig_mesh(model.mean, model.faces, model.landmarks)
+    place = np.array([3e8, 5e9, 1e5])  # mm: a scan in the coordinates of a map
+    far = rig_mesh(model.mean + place, model.faces, model.landmarks)
+    apart = np.linalg.norm(far.deltas - near.deltas, axis=2)  # of what the digits that are left make of lips and lids
+    assert apart.mean() < 0.01 and np.quantile(apart, 0.99) < 0.2 and apart.max() < 3
+    np.testing.assert_array_equal(far.neutral, model.mean + place)
+
+
+@pytest.mark.parametrize("mirrored", ["landmarks", "mesh"])
+def test_exchanged_sides_are_refused(model, mirrored):
+    V = model.mean * ([-1, 1, 1] if mirrored == "mesh" else 1)
+    F = model.faces[:, ::-1] if mirrored == "mesh" else model.faces
+    points = V[model.landmarks[MIRROR] if mirrored == "landmarks" else model.landmarks]
+    with pytest.raises(ValueError, match="landmarks: left and right are exchanged, or the mesh is mirrored"):
+        rig_mesh(V, F, points)
