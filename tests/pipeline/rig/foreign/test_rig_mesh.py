@@ -111,7 +111,9 @@ def test_a_taller_eye_is_closed(model):
     tall[:, 1] += 4.0 * near * (tall[:, 1] > model.mean[lower, 1].mean())
     before = tall + blink
     after = close_gaps(model, tall, before, "left")
-    assert _heights(tall, before, upper, lower)[0].max() > 1.0
+    heights, up, width = _heights(tall, before, upper, lower)
+    assert heights.max() > 1.0 and up[1] > 0.9 and np.linalg.norm(up) == pytest.approx(1)
+    assert width == pytest.approx(np.linalg.norm(tall[upper[0]] - tall[upper[-1]]))
     assert _heights(tall, after, upper, lower)[0].max() < 0.05
     still = ~(model.region("eye_left") | model.region("socket_left"))
     np.testing.assert_array_equal(after[still], before[still])
