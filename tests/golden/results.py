@@ -69,21 +69,22 @@ def head(img, landmarks):
         "neutral_mm": avatar.rig.neutral[::_STEP],
         "deltas_mm": avatar.rig.deltas[:, :: 2 * _STEP],
         "gaze_mm": avatar.rig.gaze[:, :: 2 * _STEP],
+        "motion_sums": np.abs(np.concatenate([avatar.rig.deltas, avatar.rig.gaze])).sum(axis=1),
         "pose.weights": np.r_[avatar.rig.pose, eyes.pose, eyes.turn.ravel() / 90],
         "eyeballs_mm": np.c_[eyes.centres, eyes.radii],
-        "texture.levels": small(avatar.texture),
+        "texture.levels": small(avatar.texture, 128),
         "diffused.levels": small(bake_texture(img, face, size=256)),
         "seen.levels": small(avatar.render(avatar.pose, size=96)),
     }
     if hair is not None:
-        values |= {"hair.surface_mm": hair.vertices[::4], "strands.levels": small(hair.texture)}
+        values |= {"hair.surface_mm": hair.vertices[::4], "strands.levels": small(hair.texture, 96)}
     return values
 
 
 def drawing(img, landmarks):
     fitted = fit_caricature(img, landmarks)
     return {
-        "edit.levels": small(edit_expression(img, landmarks, EDITS)),
+        "edit.levels": small(edit_expression(img, landmarks, EDITS), 128),
         "caricature_mm": fitted.vertices[::_STEP],
     }
 
@@ -96,9 +97,9 @@ def picture(name):
     return read_image(PORTRAITS / f"{name}.png"), read_landmarks(PORTRAITS / f"{name}.pts")
 
 
-def small(img):
-    """A picture of 48 pixels a side."""
-    return cv2.resize(img, (48, 48), interpolation=cv2.INTER_AREA)
+def small(img, side=48):
+    """A picture of so many pixels a side."""
+    return cv2.resize(img, (side, side), interpolation=cv2.INTER_AREA)
 
 
 def path_of(stage, name):

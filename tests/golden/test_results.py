@@ -35,6 +35,8 @@ def difference(key, now, before):
         return np.percentile(apart, 98) / 0.1
     if now.shape != before.shape:
         return np.inf
+    if key == "motion_sums":
+        return (np.abs(now - before) / (1.0 + 0.002 * before)).max()
     if key == "labels":
         return np.mean(now != before) / LABELS
     apart = np.abs(now.astype(float) - before)
