@@ -10,6 +10,7 @@ import numpy as np
 
 from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.beyond import beyond_warnings
 from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, detection_warnings, landmark_errors, shape_warnings
 from toongeo.caricature import caricature_rig
@@ -32,6 +33,7 @@ from toongeo.pipeline import (
     fit_3dmm,
     fit_lids,
     fit_mouth,
+    landmark_evidence,
     neutral_face,
     parse_face,
     photometric_fit,
@@ -204,6 +206,7 @@ def make_avatar(
             *doubts,
             *fit.report.warnings,
             *([str(cleaned.change)] if cleaned.change else []),
+            *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes),
             *missing_parts(model),
             *shape_warnings(face, eyes, quality),
             *(f"hair is painted on the head: {reason}" for reason in head.reasons),

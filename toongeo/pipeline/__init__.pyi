@@ -25,12 +25,14 @@ from toongeo.pipeline.hair import Hair as Hair
 from toongeo.pipeline.hair import build_hair as build_hair
 from toongeo.pipeline.hair import hair_faults as hair_faults
 from toongeo.pipeline.hair import make_room as make_room
+from toongeo.pipeline.landmarks import LandmarkEvidence as LandmarkEvidence
 from toongeo.pipeline.landmarks import LandmarkTrack as LandmarkTrack
 from toongeo.pipeline.landmarks import LandmarkTracker as LandmarkTracker
 from toongeo.pipeline.landmarks import NoFaceError as NoFaceError
 from toongeo.pipeline.landmarks import TrackedFace as TrackedFace
 from toongeo.pipeline.landmarks import detect_faces as detect_faces
 from toongeo.pipeline.landmarks import detect_landmarks as detect_landmarks
+from toongeo.pipeline.landmarks import landmark_evidence as landmark_evidence
 from toongeo.pipeline.landmarks import track_landmarks as track_landmarks
 from toongeo.pipeline.parse import ClassicalParser as ClassicalParser
 from toongeo.pipeline.parse import find_hair as find_hair
