@@ -3,12 +3,14 @@
 import dataclasses
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 
 from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.beyond import beyond_warnings
 from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, detection_warnings, landmark_errors, shape_warnings
 from toongeo.caricature import caricature_rig
@@ -25,16 +27,19 @@ from toongeo.pipeline import (
     bake_eyes,
     bake_texture,
     build_rig,
+    denoise_landmarks,
     detect_landmarks,
     find_irises,
     fit_3dmm,
     fit_lids,
     fit_mouth,
+    landmark_evidence,
     neutral_face,
     parse_face,
     photometric_fit,
     snap_eyes,
 )
+from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.texture.bake_texture import check_size
@@ -44,7 +49,7 @@ __all__ = ["STAGES", "make_avatar"]
 
 STAGES = ("fit", "parse", "align", "rig", "eyes", "hair", "texture", "report")
 _ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
-    "cartoon": align_face,
+    "cartoon": partial(align_face, noise=0),  # what noise the landmarks had is out of them by then
     "caricature": align_caricature,
 }
 
@@ -55,6 +60,7 @@ def make_avatar(
     *,
     model: MorphableModel | None = None,
     parser: FaceParser | None = None,
+    noise: Noise = "auto",
     snap: bool = False,
     photometric: bool = False,
     neutral: bool = True,
@@ -80,6 +86,9 @@ def make_avatar(
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
     parser : FaceParser, optional
         Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
+    noise : "auto" or float
+        Of the landmarks, in outer-eye distances: see :func:`toongeo.align_face`. What was found and done about it is in
+        ``face.report.noise`` and, in words, in ``report.warnings``.
     snap : bool
         Move eye landmarks to the lids that the parser found (:func:`toongeo.snap_eyes`), and fit again. For points of a
         detector, which shrinks and shifts the eyes of drawings; points that were set by hand are better left alone.
@@ -121,7 +130,7 @@ def make_avatar(
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, no face was found where none are
-        given, or method, rig or hair is unknown.
+        given, or method, rig, hair or noise is unknown.
     """
     align = _ALIGNERS.get(method)
     if align is None:
@@ -134,6 +143,7 @@ def make_avatar(
         raise ValueError(
             f"hair: expected True, False or a HairModeler, got {type(hair).__name__}; masks are hair_mask="
         )
+    check_noise(noise)
     clock = _Clock(progress)
 
     clock.start("fit")
@@ -148,6 +158,10 @@ def make_avatar(
     else:
         fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
         landmarks = fit.project(fit.vertices[fit.landmark_vertices])
+    given, cleaned = landmarks, denoise_landmarks(fit, landmarks, noise)
+    if cleaned.change:
+        landmarks = cleaned.points
+        fit = fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
     drawn, faults = read_mask(hair_mask, img.shape)
     parse = parse_face(img, landmarks, fit, parser=parser, hair_mask=drawn)
@@ -159,7 +173,9 @@ def make_avatar(
         clock.start("fit")
         fit = photometric_fit(img, fit, landmarks)
     clock.start("align")
+    goal = given if cleaned.change else landmarks  # errors are told against the points that were given, or snapped
     face = align(fit, landmarks)
+    face = dataclasses.replace(face, report=dataclasses.replace(face.report, noise=cleaned.change))
     clock.start("rig")
     neutral_aligned, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")
@@ -167,7 +183,7 @@ def make_avatar(
     # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
     face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - neutral_aligned.vertices))
     shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
-    aligned = landmark_errors(face, landmarks)  # before points under hair give way to it
+    aligned = landmark_errors(face, goal)  # before points under hair give way to it
     head = HairyHead(face, shapes, None, faults)
     if hair and not faults:
         clock.start("hair")
@@ -182,13 +198,15 @@ def make_avatar(
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(
-        coarse=landmark_errors(fit, landmarks),
+        coarse=landmark_errors(fit, goal),
         aligned=aligned,
         quality=quality,
         seconds=clock.stop(),
         warnings=(
             *doubts,
             *fit.report.warnings,
+            *([str(cleaned.change)] if cleaned.change else []),
+            *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes),
             *missing_parts(model),
             *shape_warnings(face, eyes, quality),
             *(f"hair is painted on the head: {reason}" for reason in head.reasons),
