@@ -34,6 +34,7 @@ CHOSEN_ON = {
     "editor": EXAMPLES,  # the one constant of the placing
     "eos": (*EXAMPLES, *PORTRAITS),  # the weight of the prior; in this comparison eos sets it
     "files": EXAMPLES,
+    "looks": CHOOSING,
     "landmarks": (*EXAMPLES, *PORTRAITS),
     "lips": (*EXAMPLES, *CARICATURES),
     "noise": CHOOSING,  # with seeds below 1000; the bound on what is set by hand saw the clean points of all 25

@@ -12,7 +12,7 @@ from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, u
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.beyond import beyond_warnings
 from toongeo.avatar.missing_parts import missing_parts
-from toongeo.avatar.report import AvatarReport, detection_warnings, landmark_errors, shape_warnings
+from toongeo.avatar.report import AvatarReport, detection_warnings, eye_warnings, landmark_errors, shape_warnings
 from toongeo.caricature import caricature_rig
 from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import check_image
@@ -209,6 +209,7 @@ def make_avatar(
             *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes),
             *missing_parts(model),
             *shape_warnings(face, eyes, quality),
+            *(eye_warnings(irises) if model.has("eyes") else ()),
             *(f"hair is painted on the head: {reason}" for reason in head.reasons),
         ),
     )
