@@ -33,6 +33,7 @@ CHOSEN_ON = {
     "editing": EXAMPLES,
     "editor": EXAMPLES,  # the one constant of the placing
     "eos": (*EXAMPLES, *PORTRAITS),  # the weight of the prior; in this comparison eos sets it
+    "evidence": (*EXAMPLES, *CARICATURES, *PORTRAITS),  # the bound; the weights saw renders only
     "files": EXAMPLES,
     "looks": CHOOSING,
     "landmarks": (*EXAMPLES, *PORTRAITS),
