@@ -23,6 +23,7 @@ _TOUCH_MM = 10.0  # breadth of the overlap with the outline of a head, where the
 _SLIVER_MM = 1.25  # half the breadth of what is no gap between front and back
 _CALM_MM = 1.0  # smooths the hairline; not the outer outline, whose corners are drawn
 _DRAWN_IN = 0.65  # level of the smoothed hairline, 0.4 mm inside, as the folded edge of hair covers so much skin
+_ASKEW = 5.0  # degrees of yaw beyond which the outlines of the cheeks are not the same lines on both sides
 _TURNED = 12.0  # degrees of yaw beyond which one side of the hair is hidden
 
 
@@ -124,12 +125,14 @@ def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: He
 
 
 def _over_skin(face: AlignedFace, plane: WorkingPlane, hair: Mask, head: HeadRaster) -> Mask:
-    """Hair before the head. What only touches the outline of the jaw comes from behind.
+    """Hair before the head. If it is turned at all, what only touches the outline of the jaw comes from behind.
 
     On the far side of a head that is turned further so does all that touches the outline, and all that is below the
     eyes: there the nose, of which a fit may fall short, stands before it.
     """
     over = hair & head.head
+    if abs(face.camera.yaw) < _ASKEW:
+        return over
     touching = over & ~opened(over, _TOUCH_MM / 2) & (depth_inside(head.head) < _TOUCH_MM)
     (column, bridge), (_, tip) = plane.cells(plane.of(face.vertices[face.landmark_vertices[[27, 30]]])[:, :2])
     rows = np.arange(len(hair))[:, None]
