@@ -28,6 +28,7 @@ from toongeo.pipeline import (
     detect_landmarks,
     find_irises,
     fit_3dmm,
+    fit_cranium,
     fit_lids,
     fit_mouth,
     neutral_face,
@@ -159,7 +160,7 @@ def make_avatar(
         clock.start("fit")
         fit = photometric_fit(img, fit, landmarks)
     clock.start("align")
-    face = align(fit, landmarks)
+    face = fit_cranium(align(fit, landmarks), parse)
     clock.start("rig")
     neutral_aligned, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")

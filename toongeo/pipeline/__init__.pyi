@@ -3,6 +3,7 @@
 from toongeo.pipeline.align import AlignedFace as AlignedFace
 from toongeo.pipeline.align import AlignReport as AlignReport
 from toongeo.pipeline.align import align_face as align_face
+from toongeo.pipeline.align import fit_cranium as fit_cranium
 from toongeo.pipeline.fit import FaceFit as FaceFit
 from toongeo.pipeline.fit import FitOptions as FitOptions
 from toongeo.pipeline.fit import JawOptions as JawOptions

@@ -3,3 +3,4 @@
 from toongeo.pipeline.align.align_face import AlignedFace as AlignedFace
 from toongeo.pipeline.align.align_face import AlignReport as AlignReport
 from toongeo.pipeline.align.align_face import align_face as align_face
+from toongeo.pipeline.align.fit_cranium import fit_cranium as fit_cranium
