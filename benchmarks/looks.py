@@ -7,8 +7,8 @@ soot: share of the skin that a closed eye shows, away from the line at its edge,
 darker than the skin around the eye, percent; spread: standard deviation of its lightness. nose: how far its tip
 stands before the plane of inner eye corners and mouth corners, over that of the mean face of the same size. skull:
 how far the head without hair rises above the hair and skin of the picture, percent of the face's height (brows to
-chin). forehead: median difference of picture and texture over the forehead that the picture shows as skin, levels of
-255.
+chin). ears: largest over least stretch of an ear, the worse one. forehead: median difference of picture and texture
+over the forehead that the picture shows as skin, levels of 255.
 """
 
 import os
@@ -94,6 +94,17 @@ def skull(avatar: Avatar) -> float:
     return float(100 * max(0.0, (px[face.region("skin")] @ up).max() - drawn) / height)
 
 
+def ears(avatar: Avatar) -> float:
+    """Largest over least stretch of an ear against that of the fit, the worse of both."""
+    fit, V, worst = avatar.fit.vertices, avatar.face.vertices, 1.0
+    for side in SIDES:
+        ear = avatar.face.region(f"ear_{side}")
+        linear = np.linalg.lstsq(fit[ear] - fit[ear].mean(0), V[ear] - V[ear].mean(0), rcond=None)[0]
+        stretches = np.linalg.svd(linear, compute_uv=False)
+        worst = max(worst, stretches[0] / stretches[-1])
+    return float(worst)
+
+
 def forehead(avatar: Avatar, img: np.ndarray) -> float:
     """Median difference, in levels, of picture and texture on forehead that the parse calls skin."""
     face = avatar.face
@@ -111,22 +122,25 @@ def forehead(avatar: Avatar, img: np.ndarray) -> float:
 
 
 def row(avatar: Avatar, img: np.ndarray) -> list[float]:
-    return [*lids(avatar), nose(avatar), skull(avatar), forehead(avatar, img)]
+    return [*lids(avatar), nose(avatar), skull(avatar), ears(avatar), forehead(avatar, img)]
 
 
 def main() -> None:
     found, rows = pictures(sys.argv[1:]), []
-    print(f"{'':<26} soot %  spread   nose  skull %  forehead")
+    print(f"{'':<26} soot %  spread   nose  skull %   ears  forehead")
     for picture in found:
         img = read_image(picture.image)
         rows.append(row(make_avatar(img, read_landmarks(picture.landmarks), hair=False), img))
-        soot, spread, tip, top, levels = rows[-1]
-        print(f"{picture.name:<26} {soot:6.1f} {spread:7.1f} {tip:6.2f} {top:8.1f} {levels:9.1f}", flush=True)
-    soot, _, tip, top, levels = np.array(rows).T
-    counts = (soot > 15).sum(), (tip > 1.5).sum(), (tip > 2.2).sum(), (top > 2).sum(), (levels > 25).sum()
+        soot, spread, tip, top, flap, levels = rows[-1]
+        print(
+            f"{picture.name:<26} {soot:6.1f} {spread:7.1f} {tip:6.2f} {top:8.1f} {flap:6.2f} {levels:9.1f}", flush=True
+        )
+    soot, _, tip, top, flap, levels = np.array(rows).T
+    found_in = [(soot > 15), (tip > 1.5), (tip > 2.2), (top > 2), (flap > 1.5), (levels > 25)]
+    counts = [int(faces.sum()) for faces in found_in]
     print(
         f"of {len(rows)}: sooty lids (> 15 %) {counts[0]}, noses > 1.5 {counts[1]}, > 2.2 {counts[2]},"
-        f" skulls > 2 % {counts[3]}, foreheads > 25 levels {counts[4]}"
+        f" skulls > 2 % {counts[3]}, ears > 1.5 {counts[4]}, foreheads > 25 levels {counts[5]}"
     )
     print(roles("looks", [picture.name for picture in found]))
 

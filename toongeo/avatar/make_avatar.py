@@ -31,6 +31,7 @@ from toongeo.pipeline import (
     detect_landmarks,
     find_irises,
     fit_3dmm,
+    fit_cranium,
     fit_lids,
     fit_mouth,
     landmark_evidence,
@@ -176,6 +177,7 @@ def make_avatar(
     goal = given if cleaned.change else landmarks  # errors are told against the points that were given, or snapped
     face = align(fit, landmarks)
     face = dataclasses.replace(face, report=dataclasses.replace(face.report, noise=cleaned.change))
+    face = fit_cranium(face, parse)
     clock.start("rig")
     neutral_aligned, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")
