@@ -36,6 +36,7 @@ CHOSEN_ON = {
     "files": EXAMPLES,
     "landmarks": (*EXAMPLES, *PORTRAITS),
     "lips": (*EXAMPLES, *CARICATURES),
+    "mouths": (*EXAMPLES, *CARICATURES, *PORTRAITS),  # the way to close lips was found on most of them
     "photometric": (*EXAMPLES, *PORTRAITS),
     "rig": EXAMPLES,
     "snapping": (*EXAMPLES, *CARICATURES),  # the lids' features and candidates; their weights saw renders only
