@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._brief_repr import brief_repr
+
 __all__ = ["METRES", "Scene", "SceneAnimation", "SceneMesh"]
 
 METRES = 1e-3  # the unit of glTF and USD in ours; their axes (+Y up, a face looks along +Z) are ours already
@@ -67,6 +69,8 @@ class SceneMesh:
     pivot: NDArray[np.floating] | None = None
     double_sided: bool = False
     parent: str | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name:
@@ -155,6 +159,8 @@ class SceneAnimation:
     rotations: Mapping[str, NDArray[np.floating]] = field(default_factory=dict)
     name: str = "demo"
 
+    __repr__ = brief_repr
+
     def __post_init__(self) -> None:
         f = len(self.times)
         times = _finite("times", self.times, (f,))
@@ -182,6 +188,8 @@ class Scene:
 
     meshes: tuple[SceneMesh, ...]
     animation: SceneAnimation | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "meshes", tuple(self.meshes))
