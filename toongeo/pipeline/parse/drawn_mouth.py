@@ -9,7 +9,8 @@ import cv2
 import numpy as np
 from skimage.filters import threshold_otsu
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.colour.cielab import cielab
 from toongeo.protocols import FaceLabel, FaceParse
 
@@ -39,6 +40,9 @@ class DrawnMouth:
     teeth: np.ndarray
     tongue: np.ndarray
     width: float
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "inside", "teeth", "tongue")
