@@ -108,10 +108,10 @@ def bake_texture(
         colours[rows] = share * colour + (1 - share) * colours[rows]
     image = np.zeros((size * size, 3), np.uint8)
     image[texels] = np.clip(np.rint(colours), 0, 255)
-    image = image.reshape(size, size, 3)
+    texture = image.reshape(size, size, 3)
     if parse is not None:
-        image = paint_mouth(image, atlas, img, face, drawn_mouth(img, parse))
-    texture = diffuse_texture(image, atlas.mask)
+        texture = paint_mouth(texture, atlas, img, face, drawn_mouth(img, parse))
+    texture = diffuse_texture(texture, atlas.mask)
     return texture if rig is None else paint_lids(texture, atlas, img, face, rig)
 
 
