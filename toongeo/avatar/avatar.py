@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from toongeo._brief_repr import brief_repr
 from toongeo.avatar.avatar_trimesh import avatar_trimesh
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.save_avatar import save_avatar
@@ -41,6 +42,8 @@ class Avatar(AvatarStages):
     Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
     ``eyes``, ``texture``, ``report`` and ``hair``.
     """
+
+    __repr__ = brief_repr
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._brief_repr import brief_repr
 from toongeo.io.spring_chains import SpringChains
 
 __all__ = ["METRES", "Scene", "SceneAnimation", "SceneMesh"]
@@ -72,6 +73,8 @@ class SceneMesh:
     double_sided: bool = False
     parent: str | None = None
     springs: SpringChains | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name:
@@ -162,6 +165,8 @@ class SceneAnimation:
     rotations: Mapping[str, NDArray[np.floating]] = field(default_factory=dict)
     name: str = "demo"
 
+    __repr__ = brief_repr
+
     def __post_init__(self) -> None:
         f = len(self.times)
         times = _finite("times", self.times, (f,))
@@ -189,6 +194,8 @@ class Scene:
 
     meshes: tuple[SceneMesh, ...]
     animation: SceneAnimation | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "meshes", tuple(self.meshes))

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._brief_repr import brief_repr
+
 __all__ = ["SpringChains"]
 
 
@@ -32,6 +34,8 @@ class SpringChains:
 
     joints: NDArray[np.floating]
     weights: NDArray[np.floating]
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         if self.joints.ndim != 3 or self.joints.shape[1] < 2 or self.joints.shape[2] != 3:

@@ -43,6 +43,15 @@ _PRESETS = (
 )
 
 
+_EMOTIONS = ("happy", "angry", "sad", "relaxed", "surprised")
+# Targets by the beginning of their names; a wide eye does not close in a blink, an open jaw opens further in a vowel.
+_OVERRIDES = {
+    "overrideBlink": ("eyeBlink", "eyeWide", "eyeSquint"),
+    "overrideLookAt": ("eyeLook",),
+    "overrideMouth": ("jawOpen", "mouthFunnel", "mouthPucker"),
+}
+
+
 def write_vrm(
     path: str | os.PathLike[str],
     scene: Scene,
@@ -127,8 +136,14 @@ def _binds(scene: Scene, name: str, weights: Mapping[str, float]) -> dict[str, A
         for target, weight in weights.items()
         if target in mesh.target_names
     ]
-    override = {"isBinary": False, "overrideBlink": "none", "overrideLookAt": "none", "overrideMouth": "none"}
-    return {**({"morphTargetBinds": binds} if binds else {}), **override}
+    entry: dict[str, Any] = {"morphTargetBinds": binds} if binds else {}
+    return entry | {"isBinary": False} | {key: _override(name, weights, parts) for key, parts in _OVERRIDES.items()}
+
+
+def _override(name: str, weights: Mapping[str, float], parts: tuple[str, ...]) -> str:
+    """Whether an emotion takes the place of what moves the same parts: players add both otherwise."""
+    moves = any(target.startswith(parts) for target, weight in weights.items() if weight)
+    return "blend" if name in _EMOTIONS and moves else "none"
 
 
 def _look_at(offset: NDArray[np.floating], sideways: float, updown: float) -> dict[str, Any]:

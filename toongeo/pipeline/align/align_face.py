@@ -10,7 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.visible_contour import visible_contour
@@ -69,6 +70,9 @@ class AlignedFace:
     model: MorphableModel
     fit: FaceFit
     report: AlignReport
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "vertices", "landmark_vertices")
