@@ -54,8 +54,8 @@ class Avatar(AvatarStages):
     def pose(self) -> dict[str, float]:
         """The weights, without zeros, with which the avatar looks as in its picture.
 
-        Expressions are those that :func:`toongeo.neutral_face` took out of the face (``rig.pose``), ``eyeLook*`` the
-        gaze (``eyes.pose``). ``avatar.render(avatar.pose)`` shows the picture's face, ``avatar.render()`` one at rest.
+        Expressions are those that open the mouth as it is drawn (``rig.pose``), ``eyeLook*`` the gaze (``eyes.pose``).
+        ``avatar.render(avatar.pose)`` shows the picture's face, ``avatar.render()`` one at rest.
         """
         names, weights = (*self.names, *GAZE_NAMES), np.r_[self.rig.pose, self.eyes.pose]
         return {name: weight for name, weight in zip(names, weights.tolist(), strict=True) if weight != 0}
