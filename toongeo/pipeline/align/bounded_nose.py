@@ -21,9 +21,8 @@ _CORNERS = [
 _BREADTH = PARTS["jaw"][[0, -1]]
 # Protrusion over the mean face's: up to the first a nose stays, and none comes to stand out by more than both together.
 _FREE, _MORE = 1.25, 0.3
-_ASIDE = (
-    0.03  # of the face's breadth: so far at most the tip goes to one side; a turned head tells how long its nose is
-)
+# Of the face's breadth: so far at most the tip goes to one side. A turned head tells how long its nose is.
+_ASIDE = 0.03
 _MOST = 0.8  # of its height a nose may lose: it stays one
 _RINGS = 8  # edges from the border of the nose, over which the change grows to its whole
 
