@@ -22,6 +22,7 @@ from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
 from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.straighten_teeth import straighten_teeth
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
+from toongeo.pipeline.align.unfolded_start import unfolded_start
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.protocols import HeadCamera
@@ -161,14 +162,15 @@ def align_face(
         raise ValueError(f"depth: expected 'keep' or 'scaled', got {depth!r}")
     cleaned = denoise_landmarks(fit, given, noise)
     landmarks = cleaned.points
-    V, at = fit.vertices, fit.landmark_vertices
+    start, at = unfolded_start(fit) if flow else fit.vertices, fit.landmark_vertices
+    V = start
     if flow:
         V, at = symmetric_flow(fit.model, fit.camera, V, at, landmarks, depth, slide)
     elif slide:
         at = visible_contour(fit.model, fit.camera, _anchored(fit, V, at, landmarks, weight, laplacian), at)
     aligned = _anchored(fit, V, at, landmarks, weight, laplacian)
     inner = straighten_teeth if flow else carry_inner_parts
-    aligned = keep_teeth_inside(fit.model, inner(fit.model, fit.vertices, aligned))
+    aligned = keep_teeth_inside(fit.model, inner(fit.model, start, aligned))
     seen = np.isfinite(given).all(1)
     error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - given[seen], axis=1)
     return AlignedFace(
