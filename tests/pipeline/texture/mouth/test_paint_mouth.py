@@ -42,7 +42,9 @@ def test_teeth_take_teeth_and_what_is_beside_them_does_not(face, painted):
     teeth = texture[texels(face, atlas, "teeth_upper")].astype(float)
     assert (teeth[:, 2] > 250).sum() >= 4 and (teeth[:, 1] <= 128).all()
     for part in ("tongue", "mouth_cavity"):
-        assert (texture[texels(face, atlas, part)][:, 2] <= 160).all(), part  # at the border of the class pixels are mixed
+        assert (texture[texels(face, atlas, part)][:, 2] <= 160).all(), (
+            part
+        )  # at the border of the class pixels are mixed
 
 
 def test_only_the_inside_of_the_mouth_is_painted(face, painted):

@@ -30,6 +30,7 @@ _TENSION = 2e-3  # 1/mm^2, of the plate
 _CLAMP = 1e-2  # least weight of an edge, and least mass of a vertex in terms of the median
 _TUBE, _CHIN = 10.0, 0.3  # stiffness, in terms of the plate's own, with which lips and chin move as a whole
 _STRETCH = 0.25  # of the height of lower lip and chin: by so much the lip moves alone before the chin follows
+_ALONG = 0.5  # of the jaw's way that is along the lip's, at least: a jaw cannot mend a lip that is drawn aside
 _CHIN_SHARE = 0.8  # of the motion of the template's chin: what moves so much in `jawOpen` is chin
 _BELOW_LIP_MM = 4.0  # on the template
 
@@ -40,7 +41,7 @@ def closed_mouth(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     Both lips move to the line where they meet (:func:`contact_line`) as tubes, the chin, lower teeth and tongue follow
     the lower lip, and the skin between bends as a thin plate on the drawn mesh. That is done to the largest share that
     brings no crossings, after the skin around a few of them was smoothed, and no strain beyond 2.6; or else to the one
-    with the fewest crossings.
+    with the fewest crossings, of these the one with the least strain.
 
     Parameters
     ----------
@@ -49,16 +50,17 @@ def closed_mouth(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     V : (n, 3) float64, mm
     """
     motion, drawn = _closing(model, V), crossing_count(model, V)
-    fewest, best = len(model.faces), V
+    harm, best = (np.inf, np.inf), V
     for share in _SHARES:
         closed = V + share * motion
         crossings = crossing_count(model, closed)
         if drawn < crossings <= drawn + _FEW:
             closed = uncrossed(model, closed)
             crossings = crossing_count(model, closed)
-        if crossings < fewest:
-            fewest, best = crossings, closed
-        if crossings <= drawn and strain(model, V, closed) < _STRAIN:
+        here = max(crossings - drawn, 0), max(strain(model, V, closed) - _STRAIN, 0.0)
+        if here < harm:
+            harm, best = here, closed
+        if here == (0, 0.0):
             return closed
     return uncrossed(model, best)
 
@@ -73,7 +75,9 @@ def _closing(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     way = float(np.linalg.norm(middle))
     follows = max(0.0, way - _STRETCH * float(np.linalg.norm(lower - tip)))
     # The chin goes up as it hangs on the template, so far that the lip goes that way.
-    swing = follows * way / max(-float(jaw[model.landmarks[66]] @ middle), 1e-9) * -jaw
+    lip = jaw[model.landmarks[66]]
+    along = -float(lip @ middle) / max(way, 1e-9)
+    swing = -follows / max(along, _ALONG * float(np.linalg.norm(lip))) * jaw
     D = np.zeros(V.shape)
     D[line.upper], D[line.lower[1:-1]] = to_upper, to_lower[1:-1]
     _bend(model, V, line, swing, D)
