@@ -185,7 +185,7 @@ class Avatar(AvatarStages):
 
         ================  ================================================================================
         ``.glb``          options ``crop quantize normals texture animation names sparse loadable``
-        ``.vrm``          VRM 1.0 with a body of bones alone; ``crop normals texture meta``
+        ``.vrm``          VRM 1.0 with a body of bones alone, hair below the chin swings; ``crop normals texture meta``
         ``.html``         a page with sliders that needs no network; ``crop quantize texture animation title``
         ``.usdz``         with blend shapes, needs the extra ``usd``; ``crop names``
         ``.obj``          ``face.obj`` with ``face.mtl`` and ``face_texture.png`` beside it; ``crop``

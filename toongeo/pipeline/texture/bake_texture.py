@@ -10,11 +10,14 @@ import numpy as np
 
 from toongeo.io import check_image
 from toongeo.model import MorphableModel, atlas_coordinates
+from toongeo.model.anatomy.lid_rings import lids_of
+from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import FacePicture, face_picture
+from toongeo.pipeline.texture.lids.paint_lids import paint_lids
 from toongeo.pipeline.texture.mouth.paint_mouth import paint_mouth
 from toongeo.pipeline.texture.remove_shading import remove_shading
 from toongeo.pipeline.texture.sample_area import sample_area
@@ -56,8 +59,9 @@ def bake_texture(
     img : (H, W, 3) uint8 RGB
     face : AlignedFace
     rig : Rig, optional
-        Skin that its expressions stretch manyfold, such as the narrow strip of a lid that is open in the picture, takes
-        the diffused colour too: a drawn lash there would be smeared over the closed eye.
+        Skin that its expressions stretch manyfold takes the diffused colour too. The strip of a lid that a blink draws
+        over the whole eye becomes plain skin, as it is around the eye, and its lashes a line along its edge: as drawn,
+        they would be smeared over the closed eye.
     size : int
         Side of the atlas in texels.
     parse : FaceParse, optional
@@ -104,9 +108,11 @@ def bake_texture(
         colours[rows] = share * colour + (1 - share) * colours[rows]
     image = np.zeros((size * size, 3), np.uint8)
     image[texels] = np.clip(np.rint(colours), 0, 255)
+    texture = image.reshape(size, size, 3)
     if parse is not None:
-        image = paint_mouth(image.reshape(size, size, 3), atlas, img, face, drawn_mouth(img, parse))
-    return diffuse_texture(image.reshape(size, size, 3), atlas.mask)
+        texture = paint_mouth(texture, atlas, img, face, drawn_mouth(img, parse))
+    texture = diffuse_texture(texture, atlas.mask)
+    return texture if rig is None else paint_lids(texture, atlas, img, face, rig)
 
 
 def check_size(size: int) -> None:
@@ -168,8 +174,12 @@ def _footprints(face: AlignedFace, picture: FacePicture, size: int) -> np.ndarra
 
 
 def _calm(face: AlignedFace, rig: Rig) -> np.ndarray:
-    """1 (n,) where no expression stretches the skin much, 0 where one enlarges a triangle manyfold."""
-    triangles = face.faces[face.region("face")[face.faces].all(1)]
+    """1 (n,) where no expression stretches the skin much, 0 where one enlarges a triangle manyfold, lids left aside."""
+    around = face.region("face").copy()
+    for side in SIDES:
+        if face.model.has(*lids_of(side)):
+            around &= ~face.region(f"eye_{side}")
+    triangles = face.faces[around[face.faces].all(1)]
 
     def areas(V: np.ndarray) -> np.ndarray:
         a, b, c = (V[:, triangles[:, k]] for k in range(3))
