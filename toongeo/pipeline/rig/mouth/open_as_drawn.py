@@ -23,9 +23,7 @@ _SMILING = ("mouthSmile", "mouthDimple", "mouthStretch", "mouthPress")
 _LEFT = 0.35  # of these expressions at least
 _FLOOR = 0.35  # weight that the opening expressions have at least in the pose of a mouth that is drawn well open
 _OPEN = 0.33  # of the gap of `jawOpen`: with a mouth as open as this, or more, they have it
-_ABLE = (
-    0.1  # sum of squared weights below which less is asked: at 1 an expression would show thrice what is asked of it
-)
+_ABLE = 0.1  # sum of squared weights below which less is asked: at 1, an expression shows up to thrice of it
 
 
 def open_as_drawn(face: AlignedFace, rig: Rig, drawn: np.ndarray) -> Rig:
