@@ -184,7 +184,7 @@ def test_landmarks_opens_the_editor(tmp_path, monkeypatch, capsys):
     assert main(["landmarks", str(PICTURE), "--landmarks", str(POINTS), "-o", str(tmp_path / "a.json")]) == 0
     address = capsys.readouterr().out.splitlines()[0].removeprefix("editor: ")
     assert opened == [address] and address.startswith("http://127.0.0.1:")
-    assert main(["landmarks", str(PICTURE), "--no-browser"]) == 0 and len(opened) == 1
+    assert main(["landmarks", str(PICTURE), "--no-open"]) == 0 and len(opened) == 1
     capsys.readouterr()
     assert main(["landmarks", str(PICTURE), "-o", str(PICTURE)]) == 2
     assert "output: expected one of" in capsys.readouterr().err

@@ -271,10 +271,12 @@ def test_films_that_cannot_drive(glb, actor, tmp_path, capsys):
     write_video(wall, [np.full((64, 64, 3), 90, np.uint8)] * 2, 64, 10)
     write_video(one, [np.full((64, 64, 3), 90, np.uint8)], 64, 10)
     text.write_text("no film")
+    (tmp_path / "empty.mp4").touch()
     for path, message in (
         (wall, "wall.mp4: frames: no face was found in any of 2 frames"),
         (one, "one.mp4: expected a video of several frames, got a single one"),
         (text, "text.mp4: expected a video, got a file that OpenCV cannot open"),
+        (tmp_path / "empty.mp4", "empty.mp4: expected a video, got an empty file"),
         (tmp_path / "none.mp4", "none.mp4"),
     ):
         assert main(["drive", str(glb), "--video", str(path), "-o", str(tmp_path / "out.csv")]) == 2

@@ -103,7 +103,7 @@ def _add_landmarks_editor(commands: Any) -> None:
     editor.add_argument("--face", type=int, default=0, metavar="N", help=which)
     editor.add_argument("-o", "--output", type=Path, metavar="OUT", help=".pts, .json, .csv (default: beside it)")
     editor.add_argument("--port", type=int, default=0, metavar="N", help="default: a free one")
-    editor.add_argument("--no-browser", action="store_true", help="only print where the page is")
+    editor.add_argument("--no-open", action="store_true", help="only print where the page is")
     editor.set_defaults(run=_landmarks)
 
 
@@ -207,7 +207,7 @@ def _landmarks(options: argparse.Namespace) -> None:
         output=options.output,
         face=options.face,
         port=options.port,
-        show=not options.no_browser,
+        show=not options.no_open,
     )
 
 

@@ -12,8 +12,8 @@ from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, u
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.beyond import beyond_warnings
 from toongeo.avatar.missing_parts import missing_parts
-from toongeo.avatar.report import AvatarReport, detection_warnings, landmark_errors, shape_warnings
-from toongeo.caricature import caricature_rig
+from toongeo.avatar.report import AvatarReport, detection_warnings, eye_warnings, landmark_errors, shape_warnings
+from toongeo.avatar.rigged import mouth_warnings, posed, rigged
 from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
@@ -21,27 +21,25 @@ from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
     AlignedFace,
     FaceFit,
-    Rig,
     aim_eyes,
     align_face,
     bake_eyes,
     bake_texture,
-    build_rig,
     denoise_landmarks,
     detect_landmarks,
     find_irises,
     fit_3dmm,
+    fit_cranium,
     fit_lids,
-    fit_mouth,
     landmark_evidence,
-    neutral_face,
     parse_face,
     photometric_fit,
     snap_eyes,
 )
 from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
+from toongeo.pipeline.align.size_teeth import size_teeth
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
-from toongeo.pipeline.rig.fit_pose import fit_pose
+from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser, HairModeler
 
@@ -95,7 +93,7 @@ def make_avatar(
     photometric : bool
         Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
     neutral : bool
-        Take a clear expression of the mouth out of the face (:func:`toongeo.neutral_face`): ``avatar.vertices()`` is
+        Close a mouth that is drawn open (:func:`toongeo.neutral_face`): ``avatar.vertices()`` is
         then at rest, ``avatar.vertices(avatar.pose)`` as in the picture. False: the face is taken for neutral as
         it is drawn.
     gain : float or "auto"
@@ -176,13 +174,15 @@ def make_avatar(
     goal = given if cleaned.change else landmarks  # errors are told against the points that were given, or snapped
     face = align(fit, landmarks)
     face = dataclasses.replace(face, report=dataclasses.replace(face.report, noise=cleaned.change))
+    face = size_teeth(fit_cranium(face, parse), drawn_mouth(img, parse))
     clock.start("rig")
-    neutral_aligned, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
+    neutral_aligned, shapes, drawn_face = rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")
+    before = shapes.neutral
     shapes, eyes = fit_lids(neutral_aligned, shapes)
-    # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
-    face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - neutral_aligned.vertices))
-    shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
+    # What this stage did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
+    face = dataclasses.replace(face, vertices=shapes.neutral + (drawn_face - before))
+    face, shapes = posed(face, shapes)
     aligned = landmark_errors(face, goal)  # before points under hair give way to it
     head = HairyHead(face, shapes, None, faults)
     if hair and not faults:
@@ -209,30 +209,14 @@ def make_avatar(
             *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes),
             *missing_parts(model),
             *shape_warnings(face, eyes, quality),
+            *(eye_warnings(irises) if model.has("eyes") else ()),
+            *mouth_warnings(face, shapes),
             *(f"hair is painted on the head: {reason}" for reason in head.reasons),
         ),
     )
     return Avatar(
         fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report, hair=head.hair
     )
-
-
-def _rigged(
-    face: AlignedFace,
-    landmarks: np.ndarray,
-    rig: Literal["transfer", "caricature"],
-    *,
-    neutral: bool,
-    gain: float | Literal["auto"],
-) -> tuple[AlignedFace, Rig]:
-    """The face at rest, and its expressions with the contacts of the mouth."""
-    if rig == "caricature":
-        shapes = caricature_rig(face, landmarks)
-        neutral_aligned = dataclasses.replace(face, vertices=shapes.neutral)
-    else:
-        neutral_aligned = neutral_face(face) if neutral else face
-        shapes = build_rig(neutral_aligned, gain=gain)
-    return neutral_aligned, fit_mouth(neutral_aligned, shapes)
 
 
 class _Clock:

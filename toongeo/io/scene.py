@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo._brief_repr import brief_repr
+from toongeo.io.spring_chains import SpringChains
 
 __all__ = ["METRES", "Scene", "SceneAnimation", "SceneMesh"]
 
@@ -48,6 +49,8 @@ class SceneMesh:
         Whether the inner side of its faces is drawn, too.
     parent
         Name of a mesh of the scene on which this one sits, and which takes it along.
+    springs
+        Chains of bones on which parts of it swing, in files that know them (VRM).
 
     Raises
     ------
@@ -69,6 +72,7 @@ class SceneMesh:
     pivot: NDArray[np.floating] | None = None
     double_sided: bool = False
     parent: str | None = None
+    springs: SpringChains | None = None
 
     __repr__ = brief_repr
 
@@ -88,6 +92,8 @@ class SceneMesh:
             self._put("normals", normals)
         if self.pivot is not None:
             self._put("pivot", _finite(self._label("pivot"), self.pivot, (3,)))
+        if self.springs is not None and len(self.springs.weights) != n:
+            raise ValueError(f"{self._label('springs')}: expected weights of {n}, got {len(self.springs.weights)}")
 
     def moved(self, weights: Mapping[str, float]) -> NDArray[np.floating]:
         """Vertices (n, 3), mm, with targets added; names the mesh does not have are ignored."""

@@ -41,12 +41,23 @@ def test_what_is_no_film_is_refused(tmp_path):
         read_video(tmp_path / "none.mp4")
     with pytest.raises(OSError, match=r"."):
         read_video(tmp_path)
+    (tmp_path / "empty.mp4").write_bytes(b"")
+    with pytest.raises(ValueError, match="empty.mp4: expected a video, got an empty file"):
+        read_video(tmp_path / "empty.mp4")
     (tmp_path / "text.mp4").write_bytes(b"no film")
     with pytest.raises(ValueError, match="text.mp4: expected a video, got a file that OpenCV cannot open as one"):
         read_video(tmp_path / "text.mp4")
     written(tmp_path / "one.avi", 1)
     with pytest.raises(ValueError, match="one.avi: expected a video of several frames, got a single one"):
         read_video(tmp_path / "one.avi")
+
+
+def test_a_film_that_changes_its_size_keeps_that_of_its_first_frame(tmp_path):
+    sizes = ((96, 128), (96, 128), (64, 80), (120, 60))
+    pictures = [cv2.imencode(".jpg", np.full((*size, 3), 90, np.uint8))[1].tobytes() for size in sizes]
+    (tmp_path / "film.mjpeg").write_bytes(b"".join(pictures))
+    video = read_video(tmp_path / "film.mjpeg")
+    assert [frame.shape for frame in video] == [(96, 128, 3)] * 4
 
 
 def test_a_film_without_a_frame_is_refused(tmp_path, monkeypatch):

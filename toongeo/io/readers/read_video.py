@@ -25,7 +25,7 @@ class Video:
     fps : float
         Frames a second.
     size : (int, int)
-        Height and width of a frame, px.
+        Height and width of a frame, px. Of a file whose frames change in size, OpenCV scales all to that of the first.
     """
 
     path: Path
@@ -60,11 +60,12 @@ def read_video(path: str | os.PathLike[str]) -> Video:
     OSError
         If the file cannot be read.
     ValueError
-        If it is no video, none of its frames can be decoded, or there is only one, as in a picture.
+        If it is no video or empty, none of its frames can be decoded, or there is only one, as in a picture.
     """
     path = Path(path)
     with open(path, "rb") as file:  # says whether it is there and may be read, which OpenCV does not
-        file.read(1)
+        if not file.read(1):
+            raise ValueError(f"{path}: expected a video, got an empty file")
     # A pattern of numbered pictures is a name too to OpenCV's other backend.
     capture = cv2.VideoCapture(str(path), cv2.CAP_FFMPEG)
     try:

@@ -17,6 +17,7 @@ from toongeo.model import MorphableModel
 from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 from toongeo.pipeline.align.denoise_landmarks import LandmarkNoise, Noise, denoise_landmarks
+from toongeo.pipeline.align.keep_ears_rigid import keep_ears_rigid
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
 from toongeo.pipeline.align.rim_anchors import rim_anchors
@@ -119,7 +120,7 @@ def align_face(
     (:func:`~toongeo.pipeline.align.symmetric_flow.symmetric_flow`), which cannot fold it. Then the landmark vertices
     become the anchors of :func:`laplacian_align`, which closes the rest of the way. The rims of eyes and lips are
     anchored between the landmarks too, more softly, with interpolated displacements; upper and lower rims keep their
-    order. What lies behind an opening (sockets, mouth cavity) flows along; teeth and tongue do not bend.
+    order. What lies behind an opening (sockets, mouth cavity) flows along; teeth, tongue and ears do not bend.
 
     Parameters
     ----------
@@ -172,6 +173,8 @@ def align_face(
     aligned = _anchored(fit, V, at, landmarks, weight, laplacian)
     inner = straighten_teeth if flow else carry_inner_parts
     aligned = keep_teeth_inside(fit.model, inner(fit.model, fit.vertices, aligned))
+    if flow:
+        aligned = keep_ears_rigid(fit.model, fit.vertices, aligned)
     seen = np.isfinite(given).all(1)
     error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - given[seen], axis=1)
     return AlignedFace(

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only
 from toongeo.arrays import Floats
 from toongeo.model.ibug68 import OUTER_EYES
@@ -66,6 +67,8 @@ class DenoisedLandmarks:
 
     points: Floats
     noise: LandmarkNoise
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         read_only(self, "points")

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only
 from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
@@ -52,6 +53,8 @@ class LandmarkEvidence:
     chance: float
     spread: float
     eye_light: Floats
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         read_only(self, "cues", "eye_light")
