@@ -134,8 +134,8 @@ def align_face(
     depth : {"keep", "scaled"}
         ``"keep"`` is Eq. 11: how far a vertex is from the camera does not change, so that a nose drawn twice as
         big stays as flat as it was. With ``"scaled"`` the flow has depth too: what grows in the picture grows
-        towards the viewer as well, and what a turned face shows of one half happens to the other. Without the flow
-        the two are the same.
+        towards the viewer as well, and what a turned face shows of one half happens to the other; a nose comes
+        forward no farther than noses do. Without the flow the two are the same.
     slide : bool
         Whether jaw points slide along their contour lines to where the outline of the deformed head is.
         ``landmark_vertices`` of the result tell where they ended.
