@@ -9,8 +9,6 @@ from toongeo.pipeline.rig.rig import Rig
 __all__ = ["fit_pose"]
 
 _RIDGE = 1e-6  # of the mean square of the blendshapes: decides between expressions that do the same
-
-
 _LEAST = 0.002  # a weight below it moves nothing by 0.1 mm
 
 
