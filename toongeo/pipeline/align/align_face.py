@@ -67,7 +67,7 @@ class AlignedFace:
         Vertices that served as anchors.
     model : MorphableModel
     fit : FaceFit
-        The coarse fit from which the face was deformed.
+        The coarse fit from which the face was deformed; with less of its expression where that folds the skin.
     report : AlignReport
     """
 
@@ -164,8 +164,9 @@ def align_face(
         raise ValueError(f"depth: expected 'keep' or 'scaled', got {depth!r}")
     cleaned = denoise_landmarks(fit, given, noise)
     landmarks = cleaned.points
-    start, at = unfolded_start(fit) if flow else fit.vertices, fit.landmark_vertices
-    V = start
+    if flow:
+        fit = unfolded_start(fit)
+    V, at = fit.vertices, fit.landmark_vertices
     if flow:
         V, at = symmetric_flow(fit.model, fit.camera, V, at, landmarks, depth, slide)
     elif slide:
@@ -174,9 +175,9 @@ def align_face(
     if flow and depth == "scaled":
         aligned = bounded_nose(fit.model, fit.camera, aligned)
     inner = straighten_teeth if flow else carry_inner_parts
-    aligned = keep_teeth_inside(fit.model, inner(fit.model, start, aligned))
+    aligned = keep_teeth_inside(fit.model, inner(fit.model, fit.vertices, aligned))
     if flow:
-        aligned = keep_ears_rigid(fit.model, start, aligned)
+        aligned = keep_ears_rigid(fit.model, fit.vertices, aligned)
     seen = np.isfinite(given).all(1)
     error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - given[seen], axis=1)
     return AlignedFace(

@@ -3,6 +3,8 @@
 Constants were chosen on heads of the model with mouths of twice their size (``benchmarks/alignment.py``).
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from toongeo.arrays import Floats
@@ -16,8 +18,8 @@ _FEW = 5  # triangles that intersect; what an alignment closes, or nobody sees
 _STRONG = 5.0  # sum of the named weights of mouth and jaw; fits that fold have 7 and more, most pictures 1 to 5
 
 
-def unfolded_start(fit: FaceFit) -> Floats:
-    """Vertices (n, 3) mm from which an alignment begins.
+def unfolded_start(fit: FaceFit) -> FaceFit:
+    """The fit from which an alignment begins.
 
     A mouth that is drawn as wide as the face is fitted with all that opens and stretches mouths at once, and the skin
     beside such a sum of expressions folds. The flow that follows keeps what is folded, but it can open a mouth further
@@ -30,23 +32,24 @@ def unfolded_start(fit: FaceFit) -> Floats:
 
     Returns
     -------
-    (n, 3) float64, mm, model frame
-        `fit.vertices` themselves where they are sound.
+    FaceFit
+        The same object where it is sound. Whoever takes the expression out of the aligned face again must take out that
+        of this fit: no more than went in.
     """
     model = fit.model
     named = fit.expression[: model.n_named]
     mouth = [name.startswith(("mouth", "jaw")) for name in model.expression_names[: model.n_named]]
     if named[mouth].sum() < _STRONG:
-        return fit.vertices
+        return fit
     front = fit.faces[model.region("face")[fit.faces].all(1)]
-    best, fewest = fit.vertices, _crossings(fit.vertices, front)
+    best, fewest = fit, _crossings(fit.vertices, front)
     for share in _SHARES:
         if fewest <= _FEW:
             break
-        V = model.vertices(fit.identity, share * fit.expression)
-        crossings = _crossings(V, front)
+        less = replace(fit, expression=share * fit.expression)
+        crossings = _crossings(less.vertices, front)
         if crossings < fewest:
-            best, fewest = V, crossings
+            best, fewest = less, crossings
     return best
 
 
