@@ -12,11 +12,13 @@ import numpy as np
 from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only
 from toongeo.arrays import Floats
+from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.pipeline.align.noise.field_likelihood import FieldLikelihood
 from toongeo.pipeline.align.noise.left_out import left_out
 from toongeo.pipeline.align.symmetric_field import FieldPrior, observed_covariance
 from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 
 __all__ = ["DenoisedLandmarks", "LandmarkNoise", "Noise", "check_noise", "denoise_landmarks"]
 
@@ -91,7 +93,8 @@ def denoise_landmarks(fit: FaceFit, landmarks: Floats, noise: Noise = "auto") ->
     Parameters
     ----------
     fit : FaceFit
-        To these landmarks.
+        To these landmarks. In the place of a fit of another model than the default one stands one of that: what a model
+        with few faces or no expressions cannot show would pass for noise.
     landmarks : (68, 2) float, px
         NaN rows are missing.
     noise : "auto" or float
@@ -124,6 +127,8 @@ def denoise_landmarks(fit: FaceFit, landmarks: Floats, noise: Noise = "auto") ->
     seen = np.flatnonzero(np.isfinite(landmarks).all(1))
     if noise == 0 or len(seen) < _FEWEST:
         return DenoisedLandmarks(landmarks, LandmarkNoise())
+    if fit.model is not default_model():
+        fit = fit_3dmm(None, landmarks)
     covariance, missed, px = _observations(fit, landmarks, seen)
     kept, amplitude, sigma = _believed(covariance, missed, noise)
     smoothed = noise != "auto" or sigma >= _BY_HAND
