@@ -4,6 +4,7 @@ from toongeo.driving.arkit_driver import ArkitDriver as ArkitDriver
 from toongeo.driving.landmark_driver import LandmarkDriver as LandmarkDriver
 from toongeo.driving.landmark_driver import LiveLandmarks as LiveLandmarks
 from toongeo.driving.landmark_rig import LandmarkRig as LandmarkRig
+from toongeo.driving.live_video import LiveVideo as LiveVideo
 from toongeo.driving.read_live_link import read_live_link as read_live_link
 from toongeo.driving.send_weights import send_weights as send_weights
 from toongeo.driving.take import Take as Take
