@@ -6,9 +6,10 @@ usage: python benchmarks/mutation.py --map [TESTS ...]
 
 Faults are those of `mutants.py`, a seeded sample of all there are. Each runs in a copy of the tree, never in the
 checkout: first the tests that mirror the file and its doctests, then those which the map says reach its line, the
-fastest first, then the folder of tests that mirrors its own. The first failing test ends it. `--map` runs tests once
-with coverage (pytest-cov) and writes down which reach what, in the work folder; without a map that step is left out.
-The log has a line for each fault; what is in it is not run again, so a run can be broken off and go on.
+fastest first, then the results on record. The first failing test ends it. `--map` runs tests once with coverage
+(pytest-cov) and writes down which reach what, in the work folder; without a map the mirrored folder of tests is asked.
+The log has a line for each fault; what is in it is not run again, so a run can be broken off and go on. `--again` runs
+those that survived once more, when tests were added.
 """
 
 from __future__ import annotations
@@ -26,13 +27,16 @@ import tempfile
 import time
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 from mutants import Mutant, mutants
 
 ROOT = Path(__file__).resolve().parents[1]
 PYTEST = [sys.executable, "-m", "pytest", "-q", "-x", "-n0", "-p", "no:cacheprovider", "--no-header", "--tb=no", "-rfE"]
 PYTEST += ["-m", ""]  # the slow ones too
-SURE = 60.0  # seconds of tests by the map that are tried; what then lives is mostly caught by none
+SURE = 10.0  # seconds of tests by the map that are tried; what then lives is mostly caught by none
+# Which results on record a fault in a folder can change, as pytest's -k says it.
+RECORDS = {"landmarks": "detection", "fit": "fit", "parse": "parse", "texture": "head or drawing"}
 WALL = 20  # a machine may be busy: the limit is one of CPU seconds, that of the wall clock so many times as long
 FAILED = re.compile(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", re.M)
 DURATION = re.compile(r"^([\d.]+)s (?:call|setup)\s+(.+)$", re.M)
@@ -87,6 +91,11 @@ class TestMap:
             self._data.read()
         self._seconds = json.loads(self._times.read_text()) if self._times.exists() else {}
 
+    @property
+    def complete(self) -> bool:
+        """Whether tests were mapped."""
+        return self._data is not None
+
     def gather(self, tests: list[str]) -> None:
         """Run tests once, on all cores, and write down what they reach and how long they take."""
         command = [sys.executable, "-m", "pytest", "-q", "--cov=toongeo", "--cov-context=test", "--cov-report="]
@@ -117,21 +126,22 @@ class TestMap:
         return chosen
 
 
-def stages(path: str, mutant: Mutant, tree: Tree, known: TestMap) -> list[list[str]]:
-    """Tests that concern a fault, in the order in which they are asked."""
+def stages(path: str, mutant: Mutant, tree: Tree, known: TestMap | None) -> list[list[str]]:
+    """Tests that concern a fault, in the order in which they are asked; without a map only those written for it."""
     inside = Path(path).relative_to("toongeo")
     mirror = Path("tests") / inside.parent / f"test_{inside.stem}.py"
     folder = mirror.parent
     while not (tree.root / folder).is_dir():
         folder = folder.parent
+    record = next((RECORDS[part] for part in inside.parts if part in RECORDS), "head")
     return [
         [str(mirror), path] if (tree.root / mirror).exists() else [path],
-        known.reaching(path, mutant.line),
-        [str(folder)],
+        [] if known is None else known.reaching(path, mutant.line) if known.complete else [str(folder)],
+        ["tests/golden", "-k", record],
     ]
 
 
-def verdict(path: str, mutant: Mutant, tree: Tree, known: TestMap, limit: float) -> dict[str, object]:
+def verdict(path: str, mutant: Mutant, tree: Tree, known: TestMap | None, limit: float) -> dict[str, object]:
     """What became of a fault: killed by a test or by the clock, or survived."""
     file = tree.root / path
     source = file.read_bytes()
@@ -163,9 +173,15 @@ def sample(root: Path, paths: list[str], count: int, seed: int) -> list[tuple[st
     return random.Random(seed).sample(every, min(count, len(every)))
 
 
+def logged(log: Path) -> list[dict[str, Any]]:
+    """The last line of each fault."""
+    lines = map(json.loads, log.read_text().splitlines() if log.exists() else ())
+    return list({line["id"]: line for line in lines}.values())
+
+
 def report(log: Path) -> str:
     """Rate of the killed, by folder and kind, and the survivors."""
-    rows = [json.loads(line) for line in log.read_text().splitlines()]
+    rows = logged(log)
     if not rows:
         return "no faults yet"
     dead = [row["status"] != "survived" for row in rows]
@@ -196,6 +212,7 @@ def main() -> None:
     parser.add_argument(
         "--part", default="0/1", metavar="K/N", help="every n-th fault from the k-th: processes share a log"
     )
+    parser.add_argument("--again", action="store_true", help="run those that survived again")
     parser.add_argument("--report", action="store_true", help="only print what the log holds")
     options = parser.parse_args()
     options.log = options.log or options.work / "mutation.jsonl"
@@ -204,11 +221,11 @@ def main() -> None:
         return
     options.work.mkdir(parents=True, exist_ok=True)
     tree = Tree(options.work.resolve())
-    known = TestMap(tree)
     if options.map is not None:
-        known.gather(options.map)
+        TestMap(tree).gather(options.map)
         return
-    done = {json.loads(line)["id"] for line in options.log.read_text().splitlines()} if options.log.exists() else set()
+    known = None if options.again else TestMap(tree)
+    done = {row["id"] for row in logged(options.log) if not (options.again and row["status"] == "survived")}
     first, step = map(int, options.part.split("/"))
     for path, mutant in sample(tree.root, options.paths, options.sample, options.seed)[first::step]:
         name = f"{path}:{mutant.start}:{mutant.stop}:{mutant.after}"

@@ -5,7 +5,8 @@ The stages, in the order in which :func:`make_avatar` calls them:
 1. :func:`read_image`, and :func:`detect_landmarks` or :func:`read_landmarks` - the picture and its points.
 2. :func:`fit_3dmm` - a morphable model posed and shaped by the landmarks (and by the picture: :func:`photometric_fit`).
 3. :func:`parse_face`, :func:`snap_eyes` - the parts of the picture, and eye landmarks that lie on the lids.
-4. :func:`align_face` (by :func:`laplacian_align`) - the mesh deformed onto the landmarks.
+4. :func:`align_face` (by :func:`laplacian_align`), :func:`fit_cranium` - the mesh deformed onto the landmarks, and its
+   skull lowered to the head that is drawn.
 5. :func:`build_rig` (by :func:`deformation_transfer`) - 46 FACS expressions for this face; :func:`fit_mouth` - lips
    that meet and do not cross, teeth that stay behind them.
 6. :func:`fit_lids` (by :func:`fit_eyes`, :func:`close_lids`, :func:`keep_lids_outside` ...) - eyeballs and lids in

@@ -79,6 +79,7 @@ from toongeo.pipeline import find_hair as find_hair
 from toongeo.pipeline import find_irises as find_irises
 from toongeo.pipeline import fit_3dmm as fit_3dmm
 from toongeo.pipeline import fit_3dmm_together as fit_3dmm_together
+from toongeo.pipeline import fit_cranium as fit_cranium
 from toongeo.pipeline import fit_eyes as fit_eyes
 from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.pipeline import fit_mouth as fit_mouth

@@ -1,11 +1,12 @@
 """Read-only arrays in frozen dataclasses."""
 
+import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-__all__ = ["read_only"]
+__all__ = ["read_only", "restored"]
 
 
 def read_only(instance: object, *names: str) -> None:
@@ -15,6 +16,13 @@ def read_only(instance: object, *names: str) -> None:
     """
     for name in names:
         object.__setattr__(instance, name, _view(getattr(instance, name)))
+
+
+def restored(instance: Any, state: Mapping[str, Any]) -> None:
+    """The ``__setstate__`` of a dataclass whose arrays are read-only: copies and pickles of it are so as well."""
+    for field in dataclasses.fields(instance):
+        object.__setattr__(instance, field.name, state[field.name])
+    instance.__post_init__()
 
 
 def _view(value: Any) -> Any:

@@ -11,8 +11,10 @@ import pytest
 
 from tests.driving.conftest import film, rms
 from toongeo.app.cli import main
-from toongeo.app.read_take import read_take
+from toongeo.app.read_take import read_landmark_take, read_take
 from toongeo.app.write_video import write_video
+from toongeo.driving import ScenePuppet
+from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, write_glb
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 LIVE_LINK = tuple(SCHEMES["live_link"])
@@ -73,6 +75,36 @@ def test_a_glb_plays_the_take(glb, take, tmp_path, node):
     assert sum(map(abs, halfway)) == pytest.approx(0.5, abs=1e-4)
 
 
+@pytest.mark.parametrize("options", [{"names": "arkit"}, {"crop": "face"}, {"loadable": False}])
+def test_any_glb_with_named_targets_can_be_driven(avatar, take, tmp_path, options):
+    """Renamed, cut out, or without what is needed to load it: what moves are the targets, by their names."""
+    source, out = tmp_path / "face.glb", tmp_path / "out.glb"
+    avatar.save(source, **options)
+    assert main(["drive", str(source), "--weights", str(take), "-o", str(out)]) == 0
+    before, after = glb_scene(read_glb(source)), glb_scene(read_glb(out))
+    (head,) = (mesh for mesh in after.meshes if mesh.name == "head")
+    weights = after.animation.weights["head"]
+    np.testing.assert_allclose(weights[:, head.target_names.index("jawOpen")], np.linspace(0, 1, 16), atol=1e-6)
+    assert np.count_nonzero(weights) == 15
+    np.testing.assert_array_equal(before.meshes[0].vertices, after.meshes[0].vertices)
+    film = tmp_path / "out.mp4"
+    assert main(["drive", str(source), "--weights", str(take), "-o", str(film), "--size", "64", "--fps", "10"]) == 0
+    frames, _ = played(film)
+    puppet = ScenePuppet(after)
+    for k, frame in enumerate(frames):
+        errors = [np.abs(frame - puppet.render({"jawOpen": j / 5}, 64).astype(float)).mean() for j in range(6)]
+        assert int(np.argmin(errors)) == k
+
+
+def test_a_glb_without_expressions_is_told(tmp_path, take, capsys):
+    mesh = SceneMesh("box", np.eye(3), np.array([[0, 1, 2]]), targets=np.ones((1, 3, 3)), target_names=("Basis",))
+    write_glb(tmp_path / "box.glb", Scene((mesh,)))
+    arguments = ["drive", str(tmp_path / "box.glb"), "--weights", str(take), "-o", str(tmp_path / "out.glb")]
+    assert main(arguments) == 2
+    assert "box.glb: targets: expected names of ARKit's expressions, got Basis" in capsys.readouterr().err
+    assert not (tmp_path / "out.glb").exists()
+
+
 def test_landmarks_of_another_face_drive(glb, avatar, tmp_path):
     weights = np.zeros((12, 46))
     weights[:, avatar.names.index("jawOpen")] = np.linspace(0, 0.8, 12)
@@ -94,13 +126,35 @@ def test_arrays_of_weights(tmp_path):
     wanted = [EXPRESSIONS.index(name) for name in list(SCHEMES["arkit"])[:3]]
     np.testing.assert_array_equal(read_take(arkit, 10).weights, np.eye(54)[wanted])
     np.testing.assert_allclose(read_take(arkit, 10).times, [0, 0.1, 0.2])
+    np.save(own, 80.0 * np.eye(54)[:3])
+    np.testing.assert_allclose(read_take(own).weights, 0.8 * np.eye(54)[:3])
+    assert read_take(own).notes == ("weights of up to 80 were taken for percent",)
+
+
+def test_frames_of_landmarks_without_a_face_are_held(tmp_path, avatar):
+    weights = np.zeros((8, 46))
+    weights[:, avatar.names.index("jawOpen")] = 0.5 * np.sin(np.arange(8))
+    points = film(avatar, weights)
+    path = tmp_path / "points.npy"
+    lost = points.copy()
+    lost[[0, 5]] = np.nan
+    np.save(path, lost)
+    expected = read_landmark_take(path)
+    lost[[0, 5]] = 0.0  # as programs write a face that they did not see
+    np.save(path, lost)
+    take = read_landmark_take(path)
+    np.testing.assert_array_equal(take.weights, expected.weights)
+    assert take.notes == expected.notes == ("2 of 8 frames show no face and were held",)
+    np.save(path, np.zeros((3, 68, 2)))
+    with pytest.raises(ValueError, match="points.npy: expected a face in at least one frame, got none in 3"):
+        read_landmark_take(path)
 
 
 @pytest.mark.parametrize(
     ("change", "message"),
     [
         ({"--weights": "none.csv"}, "none.csv"),
-        ({"--weights": "broken.csv"}, "51 of 52 columns are missing"),
+        ({"--weights": "broken.csv"}, "expected columns named like ARKit's expressions, got Jaw"),
         ({"--weights": "broken.npy"}, "broken.npy: expected an array of numbers"),
         ({"--weights": "take.txt"}, "weights: expected a .csv or .npy file"),
         ({"-o": "take.avi"}, "output: expected a name that ends in .mp4, .glb, .csv"),
@@ -116,7 +170,7 @@ def test_arrays_of_weights(tmp_path):
 )
 def test_bad_input_is_one_line_and_no_file(glb, take, tmp_path, monkeypatch, capsys, change, message):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "broken.csv").write_text("JawOpen\n0\n")
+    (tmp_path / "broken.csv").write_text("Jaw\n0\n")
     (tmp_path / "broken.npy").write_bytes(b"\x93NUMPY broken")
     (tmp_path / "cut.glb").write_bytes(glb.read_bytes()[:5000])
     for name in ("folder.mp4", "folder.glb"):

@@ -1,11 +1,14 @@
 """Avatars with hair: what they keep, what files hold, and what comes back."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 import toongeo as tg
 from tests.pipeline.hair.conftest import helmet
 from toongeo.avatar.add_hair import add_hair, under_hair
+from toongeo.avatar.hair_springs import hair_springs
 from toongeo.io import glb_scene, read_glb
 from toongeo.protocols import FaceLabel, HairMask
 
@@ -104,8 +107,6 @@ def test_a_modeler_of_ones_own(picture, mask, worn, bald):
 
 
 def test_what_is_refused_is_left_as_it_was(bald, picture, mask):
-    import dataclasses
-
     unsure = dataclasses.replace(bald.parse, hair=HairMask(mask, False, ("too dark",)))
     head = add_hair(picture[0], bald.face, bald.rig, unsure)
     assert head.face is bald.face
@@ -159,6 +160,42 @@ def test_all_files_hold_hair(worn, tmp_path, node):
     )
     worn.save(tmp_path / "player.glb", names="talkinghead")
     assert "Wolf3D_Hair" in {entry["name"] for entry in read_glb(tmp_path / "player.glb").json["nodes"]}
+
+
+@pytest.fixture(scope="module")
+def long_haired(worn):
+    """The lower third of the hair hangs 60 mm below the chin."""
+    V = worn.hair.vertices.copy()
+    chin = worn.face.vertices[worn.face.landmark_vertices[8], 1]
+    line = np.quantile(V[:, 1], 1 / 3)
+    low = V[:, 1] < line
+    V[low, 1] = line + (V[low, 1] - line) * (line - chin + 60) / (line - V[:, 1].min())
+    return dataclasses.replace(worn, hair=dataclasses.replace(worn.hair, vertices=V))
+
+
+def test_hair_below_the_chin_follows_chains(worn, long_haired):
+    assert hair_springs(worn.hair, worn.face) is None
+    hair, chin = long_haired.hair, worn.face.vertices[worn.face.landmark_vertices[8], 1]
+    springs = hair_springs(hair, long_haired.face)
+    follow = springs.weights.sum((1, 2))
+    assert not follow[hair.vertices[:, 1] >= chin].any()
+    np.testing.assert_allclose(follow[hair.vertices[:, 1] < chin - 20], 1.0, atol=1e-9)
+    left, behind, right = springs.joints
+    assert left[0, 0] > 0 > right[0, 0] and behind[:, 2].max() < min(left[0, 2], right[0, 2])
+    np.testing.assert_allclose(springs.joints[:, 0, 1], chin)
+    assert (np.diff(springs.joints[..., 1]) < 0).all()
+
+
+def test_hair_sways_in_three_vrm_and_comes_to_rest(long_haired, tmp_path, node):
+    long_haired.save(tmp_path / "a.vrm", texture=None)
+    (verdict,) = node("validate.mjs", tmp_path / "a.vrm")
+    assert (verdict["errors"], verdict["warnings"]) == (0, 0), verdict["messages"]
+    (report,) = node("vrm.mjs", tmp_path / "a.vrm")
+    sway = report["sway"]
+    assert sway["joints"] == 6
+    assert 1e-3 < sway["moving"][0] < 0.05
+    assert sway["moving"][1] < 1e-9  # the upper half is still
+    assert sway["settled"][0] < 1e-4
 
 
 def test_usdz_holds_hair(worn, tmp_path):

@@ -61,70 +61,13 @@ def test_order_case_and_rotations_of_a_file_do_not_matter(tmp_path, rng):
     assert first.head is None
 
 
-@pytest.mark.parametrize("rate", [24, 25, 30, 60])
-def test_times_by_time_code(tmp_path, rate):
-    codes = [f"23:59:{59 + (i + rate - 2) // rate:02d}:{(i + rate - 2) % rate:02d}.500" for i in range(4)]
-    codes = [code.replace("23:59:60", "00:00:00") for code in codes]  # midnight
-    take = read_live_link(write_take(tmp_path / "take.csv", np.zeros((4, 61)), timecodes=codes))
-    np.testing.assert_allclose(take.times, np.arange(4) / rate, atol=1e-9)
-
-
-def test_times_without_time_code_or_by_rate(tmp_path):
-    path = write_take(tmp_path / "take.csv", np.zeros((3, 61)))
-    lines = path.read_text().splitlines()
-    path.write_text("\n".join(line.split(",", 2)[2] for line in lines))
-    np.testing.assert_allclose(read_live_link(path).times, [0, 1 / 60, 2 / 60])
-    np.testing.assert_allclose(read_live_link(path, fps=10).times, [0, 0.1, 0.2])
-
-
-def edited(path, change):
-    path.write_text(change(path.read_text()))
-    return path
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (lambda text: text.replace("JawOpen", "JawOpem"), "unknown column 'JawOpem'; did you mean JawOpen"),
-        (lambda text: text.replace("JawOpen", "JawLeft"), "column 'JawLeft' is there twice"),
-        (lambda text: text.replace(",61,", ",61,x", 1), "line 2: expected a number in column EyeBlinkLeft, got 'x"),
-        (lambda text: text.replace(",61,", ",17,", 1), "line 2: expected 61 in column BlendShapeCount, got '17'"),
-        (lambda text: text.replace(",61,", ",61,nan,", 1), "line 2: expected 63 cells as in the heading, got 64"),
-        (lambda text: text.replace("10:59:59:01", "yesterday"), "line 3: expected HH:MM:SS:FF.f in column Timecode"),
-        (lambda text: text.replace("10:59:59:01", "10:59:59:00"), "line 3: expected a Timecode after the one before"),
-        (lambda text: text.splitlines()[0], "expected a heading and at least one frame, got 1 lines"),
-        (lambda text: "", "expected a heading and at least one frame, got 0 lines"),
-    ],
-)
-def test_a_bad_file_is_told_where(take, change, message):
-    with pytest.raises(ValueError, match=message) as error:
-        read_live_link(edited(take[1], change))
-    assert "take.csv" in str(error.value)
-
-
-def test_missing_columns_are_named(tmp_path):
-    names = [name for name in LIVE_LINK if name not in ("JawOpen", "TongueOut", "HeadRoll")]
-    path = write_take(tmp_path / "take.csv", np.zeros((1, len(names))), names)
-    with pytest.raises(ValueError, match="2 of 52 columns are missing: JawOpen, TongueOut"):
-        read_live_link(path)
-
-
-def test_what_is_no_text_or_no_file(tmp_path):
-    (tmp_path / "take.csv").write_bytes(bytes(range(256)) * 8)
-    with pytest.raises(ValueError, match="expected a CSV file in UTF-8"):
-        read_live_link(tmp_path / "take.csv")
-    with pytest.raises(FileNotFoundError, match=r"none\.csv"):
-        read_live_link(tmp_path / "none.csv")
-    with pytest.raises(ValueError, match="fps: expected a rate > 0, got -1"):
-        read_live_link(write_take(tmp_path / "good.csv", np.zeros((1, 61))), fps=-1)
-
-
 @pytest.mark.parametrize(
     ("recording", "message"),
     [
         (np.zeros((3, 51)), r"recording: expected \(f, 52\) weights, got \(3, 51\)"),
         (np.full((2, 52), np.nan), "recording: expected finite weights, got nan for eyeBlinkLeft in frame 0"),
         ([["a"] * 52], r"recording: expected numbers \(f, 52\)"),
+        (np.full((1, 52), 80.0), "recording: expected weights of 0 to 1, got up to 80; divide percent by 100"),
     ],
 )
 def test_arrays_that_are_none(recording, message):
@@ -159,6 +102,10 @@ def test_a_take_between_its_frames():
         (lambda: Take(np.zeros(1), np.full((1, 54), np.nan)), "weights: expected finite numbers"),
         (lambda: Take.of_frames(np.zeros((1, 54)), 0), "fps: expected a rate > 0, got 0"),
         (lambda: Take.of_frames(np.zeros((1, 54)), 30).resampled(np.inf), "fps: expected a rate > 0, got inf"),
+        (
+            lambda: Take(np.array([0.0, 8e4]), np.zeros((2, 54))).resampled(60),
+            "fps: expected at most 1000000 frames, got 80000 s at 60 frames a second",
+        ),
     ],
 )
 def test_takes_that_are_none(make, message):

@@ -1,5 +1,8 @@
 """Deformation transfer: Sumner and Popovic's own system, exact cases, equivariance, translation, pins."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -20,6 +23,12 @@ def deformed(bumpy):
 def target(sphere):
     V = sphere[0]
     return V * [1.5, 1.0, 0.8] * (1 + 0.1 * V[:, :1] * V[:, 2:])
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))])
+def test_copies_and_pickles_give_the_same(bumpy, deformed, target, copied):
+    transfer = DeformationTransfer(*bumpy, target, pinned=[0])
+    np.testing.assert_array_equal(copied(transfer).transfer(deformed), transfer.transfer(deformed))
 
 
 def test_motions_prepared_once_give_what_transfer_gives(bumpy, deformed, target):

@@ -1,5 +1,8 @@
 """Laplacian alignment, once and prefactored: every law is tested on both."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -389,3 +392,11 @@ def test_bad_options_are_named(align, bumpy, change, message):
 def test_rotations_are_counted(align, bumpy, rotations):
     with pytest.raises(ValueError, match=r"rotations: expected an integer >= 0, got"):
         align_rotated(align, *bumpy, [3, 4], np.eye(3)[:2], rotations)
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))])
+@pytest.mark.parametrize("rotations", [0, 2])
+def test_copies_and_pickles_give_the_same(bumpy, targets, copied, rotations):
+    aligner = LaplacianAligner(*bumpy, ANCHORS)
+    expected = aligner.align(targets, rotations=rotations)
+    np.testing.assert_array_equal(copied(aligner).align(targets, rotations=rotations), expected)

@@ -1,7 +1,7 @@
 // node vrm.mjs FILE... : what @pixiv/three-vrm makes of each VRM, as a JSON array on stdout.
 // For every expression: which meshes move, and how far (m) their farthest vertex; for lookAt: where each eye then looks.
 import { readFile } from 'node:fs/promises';
-import { Texture, Vector3 } from 'three';
+import { Matrix4, Texture, Vector3 } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { VRMLoaderPlugin } from '@pixiv/three-vrm';
 
@@ -15,6 +15,32 @@ function positions(mesh) {
 
 function farthest(mesh, rest) {
   return positions(mesh).reduce((most, p, i) => Math.max(most, p.distanceTo(rest[i])), 0);
+}
+
+// The head tilts at once: how far (m) hair then is, on its way and at rest again, from where stiff hair would be; the
+// same for its upper half. Null without springs.
+function swaying(vrm, meshes, rest) {
+  const hair = meshes.find((mesh) => mesh.name === 'hair');
+  if (!hair || !vrm.springBoneManager?.joints.size) return null;
+  const places = rest[meshes.indexOf(hair)];
+  const heights = places.map((p) => p.y);
+  const middle = (Math.min(...heights) + Math.max(...heights)) / 2;
+  const head = vrm.humanoid.getRawBoneNode('head');
+  const back = new Matrix4().copy(head.matrixWorld).invert();
+  const off = () => {
+    vrm.scene.updateMatrixWorld(true);
+    const turn = new Matrix4().multiplyMatrices(head.matrixWorld, back);
+    const away = positions(hair).map((p, i) => p.distanceTo(places[i].clone().applyMatrix4(turn)));
+    return [Math.max(...away), Math.max(...away.filter((_, i) => places[i].y > middle))];
+  };
+  vrm.springBoneManager.reset();
+  vrm.humanoid.getNormalizedBoneNode('head').rotation.z = 0.4;
+  const seen = [];
+  for (let frame = 0; frame < 180; frame++) {
+    vrm.update(1 / 60);
+    if (frame === 2 || frame === 179) seen.push(off());
+  }
+  return { joints: vrm.springBoneManager.joints.size, moving: seen[0], settled: seen[1] };
 }
 
 function described(vrm) {
@@ -57,6 +83,7 @@ function described(vrm) {
     gaze,
     presets: Object.keys(vrm.expressionManager.presetExpressionMap),
     custom: Object.keys(vrm.expressionManager.customExpressionMap),
+    sway: swaying(vrm, meshes, rest),
     heights: Object.fromEntries(heads.map(([name, ys]) => [name, [Math.min(...ys), Math.max(...ys)]])),
   };
 }

@@ -3,7 +3,7 @@
 import argparse
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from toongeo import __version__
 from toongeo.app.bench.commands import add_bench
@@ -60,6 +60,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     make.add_argument("--texture", choices=("png", "jpeg", "none"), help="picture in a .glb or .vrm (default png)")
     make.add_argument("--author", action="append", metavar="NAME", help="for the licence of a .vrm; may be repeated")
+    noise = "of the landmarks, in outer-eye distances; 0: exact (default auto: smoothed where they are plainly noisy)"
+    make.add_argument("--noise", type=_sigma, default="auto", metavar="SIGMA", help=noise)
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
     make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
     hair = make.add_mutually_exclusive_group()
@@ -156,6 +158,7 @@ def _make(options: argparse.Namespace) -> None:
         LandmarkSource(options.landmarks, options.scheme, options.face, options.accept),
         texture_size=options.texture_size,
         crop=options.crop,
+        noise=options.noise,
         snap=options.snap,
         photometric=options.photometric,
         hair=not options.no_hair,
@@ -163,6 +166,10 @@ def _make(options: argparse.Namespace) -> None:
         format=options.format,
         options=_saving(options),
     )
+
+
+def _sigma(text: str) -> float | Literal["auto"]:
+    return "auto" if text == "auto" else float(text)
 
 
 def _saving(options: argparse.Namespace) -> dict[str, Any]:

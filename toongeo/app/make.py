@@ -14,6 +14,7 @@ from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.avatar.save_avatar import writer_for
 from toongeo.io import LandmarkFile, read_image
 from toongeo.model.ibug68 import INNER
+from toongeo.pipeline.align.denoise_landmarks import Noise
 
 __all__ = ["make"]
 
@@ -25,6 +26,7 @@ def make(
     *,
     texture_size: int = 1024,
     crop: Crop = "head",
+    noise: Noise = "auto",
     snap: bool = False,
     photometric: bool = False,
     hair: bool = True,
@@ -64,6 +66,7 @@ def make(
         avatar = make_avatar(
             img,
             points,
+            noise=noise,
             snap=snap,
             photometric=photometric,
             hair=hair,

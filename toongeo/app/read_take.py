@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver
+from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver, unit_weights
 from toongeo.io import read_landmark_frames, read_video
 from toongeo.model.expression_schemes import EXPRESSIONS
 
@@ -75,10 +75,12 @@ def read_take(path: Path, fps: float | None = None) -> Take:
         return ArkitDriver().take(path, fps)
     if suffix != ".npy":
         raise ValueError(f"weights: expected a .csv or .npy file, got {path}")
-    frames = _array(path)
+    frames, notes = unit_weights(_array(path), str(path))
     if frames.ndim == 2 and frames.shape[1] == len(EXPRESSIONS):
-        return Take.of_frames(frames, fps or 30.0)
-    return ArkitDriver().take(frames, fps or 30.0)
+        take = Take.of_frames(frames, fps or 30.0)
+    else:
+        take = ArkitDriver().take(frames, fps or 30.0)
+    return replace(take, notes=notes)
 
 
 def read_landmark_take(path: Path, fps: float | None = None, *, scheme: str = "auto") -> Take:
@@ -90,9 +92,13 @@ def read_landmark_take(path: Path, fps: float | None = None, *, scheme: str = "a
         As of :func:`toongeo.io.read_landmark_frames`.
     """
     frames = read_landmark_frames(path, scheme=scheme)
-    neutral = frames[np.isfinite(frames).any(axis=(1, 2))][0]
-    weights = LandmarkDriver(neutral).frames(frames, fps or 30.0)
-    return Take.of_frames(weights, fps or 30.0)
+    lost = ~(np.nanmax(frames, axis=1, initial=-np.inf) > np.nanmin(frames, axis=1, initial=np.inf)).any(axis=1)
+    if lost.all():
+        raise ValueError(f"{path}: expected a face in at least one frame, got none in {len(frames)}")
+    frames = np.where(lost[:, None, None], np.nan, frames)  # programs write zeros where they saw no face
+    weights = LandmarkDriver(frames[~lost][0]).frames(frames, fps or 30.0)
+    notes = (f"{lost.sum()} of {len(frames)} frames show no face and were held",) if lost.any() else ()
+    return replace(Take.of_frames(weights, fps or 30.0), notes=notes)
 
 
 def _array(path: Path) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ from toongeo.pipeline import Rig, rig_mesh
 __all__ = ["rig"]
 
 _TOLERANCE = 1e-6  # of the head's size: displacements below it are not stored
+_FAR = 10.0  # head sizes from the origin: beyond, its place goes into the nodes, since float32 would lose its shape
 _UNCUT = (".obj", ".off")  # say which corners are one vertex; the others repeat vertices along seams
 
 
@@ -53,18 +54,21 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     faces = np.vstack([part.faces + start for part, start in zip(parts, starts, strict=False)])
     weld = mesh.suffix.lower() not in _UNCUT
     found = rig_mesh(vertices, faces, read_mesh_landmarks(landmarks, vertices), weld=weld)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle, size = (low + high) / 2, float(np.linalg.norm(high - low))
+    near = np.abs(middle).max() <= _FAR * size
     rigged = [
         replace(
             part,
             name="head" if len(parts) == 1 else part.name,
             vertices=part.vertices / METRES,
+            pivot=None if near else middle / METRES,
             targets=found.deltas[:, start : start + len(part.vertices)].astype(np.float64) / METRES,
             target_names=found.names,
         )
         for part, start in zip(parts, starts, strict=False)
     ]
-    size = float(np.linalg.norm(np.ptp(vertices, axis=0))) / METRES
-    write_glb(output, Scene(tuple(rigged)), tolerance_mm=_TOLERANCE * size)
+    write_glb(output, Scene(tuple(rigged)), tolerance_mm=_TOLERANCE * size / METRES)
     report = found.report
     print(f"{len(found.names)} expressions on {len(vertices)} vertices in {report.seconds:.1f} s")
     print(f"{report.matched:.1%} of the template's face found a partner, mean distance {report.distance:.3g}")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from toongeo._brief_repr import brief_repr
 from toongeo.avatar.avatar_trimesh import avatar_trimesh
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.save_avatar import save_avatar
@@ -42,6 +43,8 @@ class Avatar(AvatarStages):
     ``eyes``, ``texture``, ``report`` and ``hair``.
     """
 
+    __repr__ = brief_repr
+
     @property
     def names(self) -> tuple[str, ...]:
         """The 46 expressions of the rig. The eight ``eyeLook*`` names, which turn the eyes, are not among them."""
@@ -51,8 +54,8 @@ class Avatar(AvatarStages):
     def pose(self) -> dict[str, float]:
         """The weights, without zeros, with which the avatar looks as in its picture.
 
-        Expressions are those that :func:`toongeo.neutral_face` took out of the face (``rig.pose``), ``eyeLook*`` the
-        gaze (``eyes.pose``). ``avatar.render(avatar.pose)`` shows the picture's face, ``avatar.render()`` one at rest.
+        Expressions are those that open the mouth as it is drawn (``rig.pose``), ``eyeLook*`` the gaze (``eyes.pose``).
+        ``avatar.render(avatar.pose)`` shows the picture's face, ``avatar.render()`` one at rest.
         """
         names, weights = (*self.names, *GAZE_NAMES), np.r_[self.rig.pose, self.eyes.pose]
         return {name: weight for name, weight in zip(names, weights.tolist(), strict=True) if weight != 0}
@@ -182,7 +185,7 @@ class Avatar(AvatarStages):
 
         ================  ================================================================================
         ``.glb``          options ``crop quantize normals texture animation names sparse loadable``
-        ``.vrm``          VRM 1.0 with a body of bones alone; ``crop normals texture meta``
+        ``.vrm``          VRM 1.0 with a body of bones alone, hair below the chin swings; ``crop normals texture meta``
         ``.html``         a page with sliders that needs no network; ``crop quantize texture animation title``
         ``.usdz``         with blend shapes, needs the extra ``usd``; ``crop names``
         ``.obj``          ``face.obj`` with ``face.mtl`` and ``face_texture.png`` beside it; ``crop``

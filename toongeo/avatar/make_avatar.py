@@ -3,15 +3,17 @@
 import dataclasses
 import time
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 
 from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.beyond import beyond_warnings
 from toongeo.avatar.missing_parts import missing_parts
-from toongeo.avatar.report import AvatarReport, detection_warnings, landmark_errors, shape_warnings
-from toongeo.caricature import caricature_rig
+from toongeo.avatar.report import AvatarReport, detection_warnings, eye_warnings, landmark_errors, shape_warnings
+from toongeo.avatar.rigged import mouth_warnings, posed, rigged
 from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
@@ -19,24 +21,25 @@ from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
     AlignedFace,
     FaceFit,
-    Rig,
     aim_eyes,
     align_face,
     bake_eyes,
     bake_texture,
-    build_rig,
+    denoise_landmarks,
     detect_landmarks,
     find_irises,
     fit_3dmm,
+    fit_cranium,
     fit_lids,
-    fit_mouth,
-    neutral_face,
+    landmark_evidence,
     parse_face,
     photometric_fit,
     snap_eyes,
 )
+from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
+from toongeo.pipeline.align.size_teeth import size_teeth
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
-from toongeo.pipeline.rig.fit_pose import fit_pose
+from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.protocols import FaceParser, HairModeler
 
@@ -44,7 +47,7 @@ __all__ = ["STAGES", "make_avatar"]
 
 STAGES = ("fit", "parse", "align", "rig", "eyes", "hair", "texture", "report")
 _ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
-    "cartoon": align_face,
+    "cartoon": partial(align_face, noise=0),  # what noise the landmarks had is out of them by then
     "caricature": align_caricature,
 }
 
@@ -55,6 +58,7 @@ def make_avatar(
     *,
     model: MorphableModel | None = None,
     parser: FaceParser | None = None,
+    noise: Noise = "auto",
     snap: bool = False,
     photometric: bool = False,
     neutral: bool = True,
@@ -80,13 +84,16 @@ def make_avatar(
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
     parser : FaceParser, optional
         Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
+    noise : "auto" or float
+        Of the landmarks, in outer-eye distances: see :func:`toongeo.align_face`. What was found and done about it is in
+        ``face.report.noise`` and, in words, in ``report.warnings``.
     snap : bool
         Move eye landmarks to the lids that the parser found (:func:`toongeo.snap_eyes`), and fit again. For points of a
         detector, which shrinks and shifts the eyes of drawings; points that were set by hand are better left alone.
     photometric : bool
         Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
     neutral : bool
-        Take a clear expression of the mouth out of the face (:func:`toongeo.neutral_face`): ``avatar.vertices()`` is
+        Close a mouth that is drawn open (:func:`toongeo.neutral_face`): ``avatar.vertices()`` is
         then at rest, ``avatar.vertices(avatar.pose)`` as in the picture. False: the face is taken for neutral as
         it is drawn.
     gain : float or "auto"
@@ -121,7 +128,7 @@ def make_avatar(
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, no face was found where none are
-        given, or method, rig or hair is unknown.
+        given, or method, rig, hair or noise is unknown.
     """
     align = _ALIGNERS.get(method)
     if align is None:
@@ -134,6 +141,7 @@ def make_avatar(
         raise ValueError(
             f"hair: expected True, False or a HairModeler, got {type(hair).__name__}; masks are hair_mask="
         )
+    check_noise(noise)
     clock = _Clock(progress)
 
     clock.start("fit")
@@ -148,6 +156,10 @@ def make_avatar(
     else:
         fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
         landmarks = fit.project(fit.vertices[fit.landmark_vertices])
+    given, cleaned = landmarks, denoise_landmarks(fit, landmarks, noise)
+    if cleaned.change:
+        landmarks = cleaned.points
+        fit = fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
     drawn, faults = read_mask(hair_mask, img.shape)
     parse = parse_face(img, landmarks, fit, parser=parser, hair_mask=drawn)
@@ -159,15 +171,19 @@ def make_avatar(
         clock.start("fit")
         fit = photometric_fit(img, fit, landmarks)
     clock.start("align")
+    goal = given if cleaned.change else landmarks  # errors are told against the points that were given, or snapped
     face = align(fit, landmarks)
+    face = dataclasses.replace(face, report=dataclasses.replace(face.report, noise=cleaned.change))
+    face = size_teeth(fit_cranium(face, parse), drawn_mouth(img, parse))
     clock.start("rig")
-    neutral_aligned, shapes = _rigged(face, landmarks, rig, neutral=neutral, gain=gain)
+    neutral_aligned, shapes, drawn_face = rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")
+    before = shapes.neutral
     shapes, eyes = fit_lids(neutral_aligned, shapes)
-    # What these stages did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
-    face = dataclasses.replace(face, vertices=shapes.neutral + (face.vertices - neutral_aligned.vertices))
-    shapes = dataclasses.replace(shapes, pose=fit_pose(shapes, face.vertices, face.region("skin")))
-    aligned = landmark_errors(face, landmarks)  # before points under hair give way to it
+    # What this stage did to the neutral face (lids that lie on the eyeballs) is done to the face of the picture.
+    face = dataclasses.replace(face, vertices=shapes.neutral + (drawn_face - before))
+    face, shapes = posed(face, shapes)
+    aligned = landmark_errors(face, goal)  # before points under hair give way to it
     head = HairyHead(face, shapes, None, faults)
     if hair and not faults:
         clock.start("hair")
@@ -182,39 +198,25 @@ def make_avatar(
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(
-        coarse=landmark_errors(fit, landmarks),
+        coarse=landmark_errors(fit, goal),
         aligned=aligned,
         quality=quality,
         seconds=clock.stop(),
         warnings=(
             *doubts,
             *fit.report.warnings,
+            *([str(cleaned.change)] if cleaned.change else []),
+            *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes),
             *missing_parts(model),
             *shape_warnings(face, eyes, quality),
+            *(eye_warnings(irises) if model.has("eyes") else ()),
+            *mouth_warnings(face, shapes),
             *(f"hair is painted on the head: {reason}" for reason in head.reasons),
         ),
     )
     return Avatar(
         fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report, hair=head.hair
     )
-
-
-def _rigged(
-    face: AlignedFace,
-    landmarks: np.ndarray,
-    rig: Literal["transfer", "caricature"],
-    *,
-    neutral: bool,
-    gain: float | Literal["auto"],
-) -> tuple[AlignedFace, Rig]:
-    """The face at rest, and its expressions with the contacts of the mouth."""
-    if rig == "caricature":
-        shapes = caricature_rig(face, landmarks)
-        neutral_aligned = dataclasses.replace(face, vertices=shapes.neutral)
-    else:
-        neutral_aligned = neutral_face(face) if neutral else face
-        shapes = build_rig(neutral_aligned, gain=gain)
-    return neutral_aligned, fit_mouth(neutral_aligned, shapes)
 
 
 class _Clock:

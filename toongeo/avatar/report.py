@@ -7,10 +7,10 @@ import numpy as np
 from toongeo.metrics import MeshQuality, landmark_error
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.ibug68 import INNER, OUTER_EYES
-from toongeo.pipeline import AlignedFace, Eyes, FaceFit
+from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Iris
 from toongeo.protocols import LandmarkDetection
 
-__all__ = ["AvatarReport", "landmark_errors", "shape_warnings"]
+__all__ = ["AvatarReport", "detection_warnings", "eye_warnings", "landmark_errors", "shape_warnings"]
 
 _FEW_INTERSECTIONS = 0.003  # of the triangles of the face; more are worth a warning
 
@@ -64,6 +64,14 @@ def detection_warnings(found: LandmarkDetection) -> tuple[str, ...]:
         return ()
     trust = 100 * float(found.confidence[INNER].mean())
     return (f"the landmarks that were found are not sure (face {100 * found.score:.0f} %, points {trust:.0f} %)",)
+
+
+def eye_warnings(irises: tuple[Iris | None, Iris | None]) -> list[str]:
+    """Which eyes show too little to be opened as they are."""
+    without = [name for name, iris in zip(SIDES, irises, strict=True) if iris is None]
+    if len(without) == len(SIDES):
+        return ["the eyes show no iris: what their lids hide is guessed"]
+    return [f"the {name} eye shows no iris: the other eye's stands in for it" for name in without]
 
 
 def shape_warnings(face: AlignedFace, eyes: Eyes, quality: MeshQuality) -> list[str]:

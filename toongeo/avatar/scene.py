@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from toongeo.avatar.crop_faces import Crop, crop_faces
+from toongeo.avatar.hair_springs import hair_springs
 from toongeo.avatar.stages import AvatarStages
 from toongeo.geometry import vertex_normals
 from toongeo.io import Scene, SceneAnimation, SceneMesh
 from toongeo.model import MorphableModel, atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES, gaze_names
 from toongeo.model.anatomy.parts import SIDES, TEETH
-from toongeo.pipeline import Eyes, Hair, Rig
+from toongeo.pipeline import AlignedFace, Eyes, Hair, Rig
 from toongeo.render import sample_image, uv_to_px
 
 __all__ = ["Shapes", "avatar_scene", "demo_clip", "head_parts", "own_shapes", "weight_clip"]
@@ -81,7 +82,7 @@ def avatar_scene(
     meshes = [_part(avatar, name, faces, shapes, crop) for name, faces in parts.items()]
     meshes += [_eye(avatar.eyes, side, avatar.texture, shapes) for side in range(len(avatar.eyes.templates))]
     if avatar.hair is not None and crop != "face":
-        meshes.append(_hair(avatar.hair))
+        meshes.append(_hair(avatar.hair, avatar.face))
     clip = None if animation is None else _tracks(avatar.rig, animation, shapes, meshes)
     return Scene(tuple(meshes if textured else map(_plain, meshes)), clip)
 
@@ -185,7 +186,7 @@ def _eye(eyes: Eyes, side: int, texture: np.ndarray, shapes: Shapes) -> SceneMes
     )
 
 
-def _hair(hair: Hair) -> SceneMesh:
+def _hair(hair: Hair, face: AlignedFace) -> SceneMesh:
     return SceneMesh(
         name="hair",
         vertices=hair.vertices,
@@ -195,6 +196,7 @@ def _hair(hair: Hair) -> SceneMesh:
         texture=hair.texture,
         double_sided=True,
         parent="head",
+        springs=hair_springs(hair, face),
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.avatar.report import AvatarReport
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Hair, Rig
 from toongeo.protocols import FaceParse
@@ -38,6 +38,8 @@ class AvatarStages:
     texture: np.ndarray
     report: AvatarReport
     hair: Hair | None = None
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "texture")

@@ -15,7 +15,7 @@ import numpy as np
 from toongeo.avatar.report import AvatarReport
 from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
-from toongeo.pipeline import AlignedFace, AlignReport, Eyes, FaceFit, Rig, RigReport
+from toongeo.pipeline import AlignedFace, AlignReport, Eyes, FaceFit, LandmarkNoise, Rig, RigReport
 from toongeo.pipeline.fit.face_fit import FitReport, PhotometricReport
 from toongeo.protocols import FaceParse, HairMask
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
@@ -35,6 +35,7 @@ _CLASSES: dict[str, Any] = {
         FaceParse,
         FitReport,
         HairMask,
+        LandmarkNoise,
         MeshQuality,
         PerspectiveCamera,
         PhotometricReport,
@@ -44,7 +45,7 @@ _CLASSES: dict[str, Any] = {
     )
 }
 # Fields that came later are left out where they are None: a file without them is as it was before.
-_LATER = ("hair",)
+_LATER = ("hair", "noise")
 _VERSION = 1
 _MOST_BYTES = 1 << 30  # that a file may ask for
 

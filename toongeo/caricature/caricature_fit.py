@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.geometry import vertex_normals
@@ -75,6 +76,9 @@ class CaricatureFit:
     space: FaceSpace
     fit: FaceFit
     report: CaricatureReport
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "vertices", "w", "landmark_vertices")

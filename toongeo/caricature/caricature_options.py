@@ -9,6 +9,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
+
 __all__ = ["CaricatureOptions"]
 
 
@@ -38,10 +40,13 @@ class CaricatureOptions:
     tuck : bool
         Whether mouth and sockets are pushed back where they come through the skin. Takes a tenth of a second.
 
+    noise : "auto" or float
+        Of the landmarks: see :func:`toongeo.align_face`.
+
     Raises
     ------
     ValueError
-        If a number is negative or not finite, or ``steps`` is below 1.
+        If a number is negative or not finite, ``steps`` is below 1, or the noise is neither "auto" nor a number.
     """
 
     looseness: float = 0.01
@@ -51,11 +56,13 @@ class CaricatureOptions:
     tolerance: float = 1e-2
     steps: int = 3
     tuck: bool = True
+    noise: Noise = "auto"
 
     def __post_init__(self) -> None:
         for option in fields(self):
             value = getattr(self, option.name)
-            if not (np.isfinite(value) and value >= 0):
+            if option.name != "noise" and not (np.isfinite(value) and value >= 0):
                 raise ValueError(f"{option.name}: expected a finite number >= 0, got {value}")
+        check_noise(self.noise)
         if self.steps < 1:
             raise ValueError(f"steps: expected at least 1, got {self.steps}")

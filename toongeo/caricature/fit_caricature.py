@@ -23,6 +23,7 @@ from toongeo.io.check_landmarks import check_landmarks
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.anatomy.visible_landmarks import landmarks_seen
 from toongeo.pipeline.align.align_face import align_face
+from toongeo.pipeline.align.denoise_landmarks import denoise_landmarks
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
@@ -162,9 +163,10 @@ class _Alternation:
         fit = fit_3dmm(None, self.pixels, model=self.space.model) if start is None else start
         if fit.model is not self.space.model:
             raise ValueError("start: expected a fit of the space's model, got one of another")
+        self._denoise(fit)
         at = fit.vertices[fit.landmark_vertices[self.seen]]
         camera = level_camera(_orthographic(fit.camera), at, self.pixels[self.seen])
-        face = align_face(replace(fit, camera=camera), self.pixels)
+        face = align_face(replace(fit, camera=camera), self.pixels, noise=0)
         w = np.zeros((2, len(self.space.space.rotations)))
         return _State(w, camera, face.landmark_vertices, fit, face.vertices, face.vertices)
 
@@ -172,10 +174,14 @@ class _Alternation:
         """A caricature that has flowed to the landmarks."""
         if start.space is not self.space:
             raise ValueError("start: expected a fit of the same space, got one of another")
+        self._denoise(start.fit)
         camera, before, landmarks = _orthographic(start.camera), start.vertices, start.landmark_vertices
         left = before[self.space.vertices] - self.space.space.vertices(start.w)
         V, _ = symmetric_flow(self.space.model, camera, before, landmarks, self.pixels, "scaled", False)
         return _State(start.w, camera, landmarks, start.fit, before, V, left, posed=False)
+
+    def _denoise(self, fit: FaceFit) -> None:
+        self.pixels = denoise_landmarks(fit, self.pixels, self.options.noise).points
 
     def run(self, state: _State, iterations: int) -> tuple[Floats, _State, list[float], bool]:
         """Mesh (k, 3) and state of the least E_def, E_def after the P'-steps up to it, and whether it fell no more."""

@@ -15,6 +15,8 @@ from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 __all__ = ["ArkitDriver"]
 
+_MOST = 5.0  # no expression is meant to be played five times
+
 
 class ArkitDriver:
     """Reads the 52 blend shapes of ARKit, as an :class:`toongeo.ExpressionDriver`.
@@ -77,4 +79,7 @@ class ArkitDriver:
             frame, column = bad[0]
             got = f"{frames[frame, column]} for {self.columns[column]} in frame {frame}"
             raise ValueError(f"recording: expected finite weights, got {got}")
+        most = np.abs(frames).max(initial=0.0)
+        if most > _MOST:
+            raise ValueError(f"recording: expected weights of 0 to 1, got up to {most:.4g}; divide percent by 100")
         return Take.of_frames(frames @ scheme_matrix("arkit", self.columns), 60.0 if fps is None else fps)

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.model.expression_schemes import EXPRESSIONS
 from toongeo.pipeline import AlignedFace, Rig, align_face, build_rig, fit_3dmm, fit_3dmm_together, fit_lids
@@ -32,6 +33,9 @@ class LandmarkRig:
     names: tuple[str, ...]
     neutral: Floats
     deltas: Floats
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         shapes = np.shape(self.neutral), np.shape(self.deltas)

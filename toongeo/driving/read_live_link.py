@@ -1,56 +1,73 @@
-"""CSV files of Live Link Face."""
+"""CSV files of Live Link Face, and other tables of weights."""
 
 from __future__ import annotations
 
-import csv
-import difflib
 import os
-import re
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from toongeo.arrays import Floats
+from toongeo.driving.table.cells import read_table
+from toongeo.driving.table.expression_columns import expression_columns
+from toongeo.driving.table.times import frame_times
+from toongeo.driving.table.unit_weights import unit_weights
 from toongeo.driving.take import Take
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 __all__ = ["read_live_link", "scheme_matrix"]
 
-_TIMECODE, _COUNT = "timecode", "blendshapecount"
 _HEAD = ("HeadYaw", "HeadPitch", "HeadRoll")
-_RATES = (24, 25, 30, 48, 50, 60)  # frames a second at which the app records
-_USUAL_RATE = 60.0  # its default
-_TIME = re.compile(r"(\d+):(\d+):(\d+)[:;](\d+(?:\.\d+)?)")
 
 
 def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None) -> Take:
-    """A take that the app Live Link Face, or another with its columns, has recorded.
+    """A take that the app Live Link Face has recorded, or another table of weights.
 
     Parameters
     ----------
     path
-        A CSV file with a heading. ``Timecode`` and ``BlendShapeCount`` may be absent, and so may the nine rotations;
-        the 52 expressions of ARKit must be there, in any order and case.
+        A CSV file with a heading; parted by commas, semicolons or tabs, with a point or a comma before decimals.
+        Any of the 52 expressions of ARKit or of our own, in any order and case; those that are not there are 0.
+        Times are in a column ``Timecode``, ``time`` (time codes, or s), ``time_ms`` or ``frame``, if there is one.
     fps : float, optional
-        Frames a second that the last part of a time code counts, or of a file without. None: the rate that the time
-        codes show, or 60.
+        Frames a second that the last part of a time code counts, or of a file without times. None: the rate that the
+        time codes show, or 60.
+
+    Returns
+    -------
+    Take
+        Numbers that are missing, as in frames without a face, are drawn from the frames around; a frame that is there
+        twice counts once. ``notes`` says what was filled and left out.
 
     Raises
     ------
     OSError
         If the file cannot be read.
     ValueError
-        If a column is missing, twice there or unknown, a line has another number of cells, a cell is not a finite
-        number, or the time codes do not increase; says which line and column.
+        If no column is an expression or one is twice there, a line has another number of cells, a cell is no number,
+        or times go back; says which line and column.
     """
-    heading, lines = _cells(Path(path))
-    columns = _columns(heading, path)
-    values = _numbers(heading, lines, columns, path)
-    weights = values @ scheme_matrix("live_link", [columns[i] for i in sorted(columns)])
-    names = [columns[i] for i in sorted(columns)]
-    head = values[:, [names.index(name) for name in _HEAD]] if set(_HEAD) <= set(names) else None
-    return Take(_times(heading, lines, fps, path), weights, head)
+    table = read_table(Path(path))
+    columns, notes = expression_columns(table)
+    times = frame_times(table, fps)
+    kept = np.r_[True, np.diff(times) > 0]
+    repeated = len(kept) - kept.sum()
+    values = {name: table.numbers(column)[kept] for name, column in columns.items()}
+    gaps = np.any([np.isnan(values[name]) for name in values], axis=0)
+    times = times[kept]
+    filled = {name: _filled(times, column, f"{path}: column {name}") for name, column in values.items()}
+    weights = np.zeros((len(times), len(EXPRESSIONS)))
+    for name, column in filled.items():
+        for own, share in SCHEMES["live_link"].get(name, {name: 1.0}).items():
+            weights[:, EXPRESSIONS.index(own)] = share * column
+    weights, unit = unit_weights(weights, str(path))
+    head = np.column_stack([filled[name] for name in _HEAD]) if set(_HEAD) <= set(filled) else None
+    if repeated:
+        notes += (f"{repeated} frames with the time of the one before were left out",)
+    if gaps.any():
+        notes += (f"{gaps.sum()} of {len(times)} frames have gaps, which were filled from the frames around",)
+    return Take(times - times[0], weights, head, (*table.notes, *notes, *unit))
 
 
 def scheme_matrix(scheme: str, names: Sequence[str]) -> Floats:
@@ -62,91 +79,9 @@ def scheme_matrix(scheme: str, names: Sequence[str]) -> Floats:
     return matrix
 
 
-def _cells(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Heading, and the lines that are not empty with their numbers."""
-    try:
-        with open(path, encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file)
-            lines = [(reader.line_num, row) for row in reader if any(cell.strip() for cell in row)]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise ValueError(f"{path}: expected a CSV file in UTF-8, got something else ({error})") from None
-    if len(lines) < 2:
-        raise ValueError(f"{path}: expected a heading and at least one frame, got {len(lines)} lines")
-    heading = [cell.strip() for cell in lines[0][1]]
-    for number, row in lines[1:]:
-        if len(row) != len(heading):
-            raise ValueError(f"{path}, line {number}: expected {len(heading)} cells as in the heading, got {len(row)}")
-    return heading, lines[1:]
-
-
-def _columns(heading: list[str], path: str | os.PathLike[str]) -> dict[int, str]:
-    """Index of a column -> its name in the scheme."""
-    known = {name.lower(): name for name in SCHEMES["live_link"]}
-    columns: dict[int, str] = {}
-    for i, cell in enumerate(heading):
-        if cell.lower() in (_TIMECODE, _COUNT):
-            continue
-        name = known.get(cell.lower())
-        if name is None:
-            near = difflib.get_close_matches(cell.lower(), known, n=1)
-            hint = f"; did you mean {known[near[0]]}?" if near else ""
-            raise ValueError(f"{path}: unknown column {cell!r}{hint}")
-        if name in columns.values():
-            raise ValueError(f"{path}: column {cell!r} is there twice")
-        columns[i] = name
-    needed = [name for name, weights in SCHEMES["live_link"].items() if weights]
-    missing = [name for name in needed if name not in columns.values()]
-    if missing:
-        raise ValueError(f"{path}: {len(missing)} of {len(needed)} columns are missing: {', '.join(missing)}")
-    return columns
-
-
-def _numbers(
-    heading: list[str], lines: list[tuple[int, list[str]]], columns: dict[int, str], path: str | os.PathLike[str]
-) -> Floats:
-    count = next((i for i, cell in enumerate(heading) if cell.lower() == _COUNT), None)
-    values = np.empty((len(lines), len(columns)))
-    for frame, (line, row) in enumerate(lines):
-        if count is not None and row[count].strip() not in {"52", "61", str(len(columns))}:
-            raise ValueError(
-                f"{path}, line {line}: expected {len(columns)} in column BlendShapeCount, got {row[count]!r}"
-            )
-        for k, i in enumerate(sorted(columns)):
-            try:
-                values[frame, k] = float(row[i])
-            except ValueError:
-                values[frame, k] = np.nan
-            if not np.isfinite(values[frame, k]):
-                raise ValueError(f"{path}, line {line}: expected a number in column {heading[i]}, got {row[i]!r}")
-    return values
-
-
-def _times(
-    heading: list[str], lines: list[tuple[int, list[str]]], fps: float | None, path: str | os.PathLike[str]
-) -> Floats:
-    if fps is not None and not (np.isfinite(fps) and fps > 0):
-        raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
-    column = next((i for i, cell in enumerate(heading) if cell.lower() == _TIMECODE), None)
-    if column is None:
-        return np.arange(len(lines)) / (fps or _USUAL_RATE)
-    parts = np.empty((len(lines), 4))
-    for frame, (line, row) in enumerate(lines):
-        match = _TIME.fullmatch(row[column].strip())
-        if match is None:
-            raise ValueError(f"{path}, line {line}: expected HH:MM:SS:FF.f in column Timecode, got {row[column]!r}")
-        parts[frame] = [float(part) for part in match.groups()]
-    seconds, frames = parts[:, :3] @ [3600.0, 60.0, 1.0], parts[:, 3]
-    times = seconds + frames / (fps or _rate(seconds, frames))
-    times += 86400.0 * np.r_[0, np.cumsum(np.diff(times) < -43200.0)]  # past midnight
-    late = np.flatnonzero(np.diff(times) <= 0)
-    if len(late):
-        line, row = lines[late[0] + 1]
-        raise ValueError(f"{path}, line {line}: expected a Timecode after the one before, got {row[column]!r}")
-    return times - times[0]
-
-
-def _rate(seconds: Floats, frames: Floats) -> float:
-    """The least usual rate that has room for all frames of a second, if the last frame of one was seen."""
-    if np.ptp(seconds) == 0:
-        return _USUAL_RATE
-    return float(next((rate for rate in _RATES if rate > frames.max()), _USUAL_RATE))
+def _filled(times: Floats, values: Floats, what: str) -> Floats:
+    """Numbers without gaps: linear in between, the nearest beyond."""
+    known = np.isfinite(values)
+    if not known.any():
+        raise ValueError(f"{what}: expected a number in at least one frame, got none")
+    return np.interp(times, times[known], values[known])

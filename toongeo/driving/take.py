@@ -6,11 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.model.expression_schemes import EXPRESSIONS
 
 __all__ = ["Take"]
+
+_MOST_FRAMES = 10**6  # 4.6 hours at 60 frames a second, 0.4 GB
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,11 +28,17 @@ class Take:
         Columns as in ``toongeo.model.expression_schemes.EXPRESSIONS``.
     head : (f, 3) float64, radians, or None
         Yaw, pitch and roll of the head as the recording has them, without a promise about their signs.
+    notes : tuple of str
+        What a reader filled or left out.
     """
 
     times: Floats
     weights: Floats
     head: Floats | None = None
+    notes: tuple[str, ...] = ()
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         f = len(self.times)
@@ -57,9 +66,13 @@ class Take:
         """The same at a steady rate; linear in between."""
         if not (np.isfinite(fps) and fps > 0):
             raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
+        if self.seconds * fps >= _MOST_FRAMES:
+            raise ValueError(
+                f"fps: expected at most {_MOST_FRAMES} frames, got {self.seconds:.0f} s at {fps:g} frames a second"
+            )
         times = np.arange(int(self.seconds * fps + 1e-6) + 1) / fps
 
         def at(values: Floats) -> Floats:
             return np.column_stack([np.interp(times, self.times - self.times[0], column) for column in values.T])
 
-        return Take(times, at(self.weights), None if self.head is None else at(self.head))
+        return Take(times, at(self.weights), None if self.head is None else at(self.head), self.notes)

@@ -82,7 +82,7 @@ class ExpressionEditor:
         self._new_skin = NewSkin(face.model, rig, self.avatar.texture)
         self._mesh = picture_mesh(face, self.avatar.eyes)
         points = face.project(face.vertices[face.landmark_vertices])
-        if isinstance(scheme, str):
+        if isinstance(scheme, str) and face.report.noise is None:
             given = ibug_landmarks(landmarks, scheme)
             points = np.where(np.isfinite(given), given, points)
         self._warp = picture_warp(img, points, self._mesh, self.avatar.parse)

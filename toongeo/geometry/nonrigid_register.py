@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.geometry.facing_surface import FACING, FacingSurface
 from toongeo.geometry.landmark_matrix import landmark_matrix
@@ -63,6 +64,9 @@ class RegisteredMesh:
     shift: Floats
     iterations: int
     status: str
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         names = ("vertices", "faces", "barycentric", "distances", "matched", "landmark_errors", "rotation", "shift")

@@ -6,6 +6,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._brief_repr import brief_repr
+from toongeo.io.spring_chains import SpringChains
+
 __all__ = ["METRES", "Scene", "SceneAnimation", "SceneMesh"]
 
 METRES = 1e-3  # the unit of glTF and USD in ours; their axes (+Y up, a face looks along +Z) are ours already
@@ -46,6 +49,8 @@ class SceneMesh:
         Whether the inner side of its faces is drawn, too.
     parent
         Name of a mesh of the scene on which this one sits, and which takes it along.
+    springs
+        Chains of bones on which parts of it swing, in files that know them (VRM).
 
     Raises
     ------
@@ -67,6 +72,9 @@ class SceneMesh:
     pivot: NDArray[np.floating] | None = None
     double_sided: bool = False
     parent: str | None = None
+    springs: SpringChains | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name:
@@ -84,6 +92,8 @@ class SceneMesh:
             self._put("normals", normals)
         if self.pivot is not None:
             self._put("pivot", _finite(self._label("pivot"), self.pivot, (3,)))
+        if self.springs is not None and len(self.springs.weights) != n:
+            raise ValueError(f"{self._label('springs')}: expected weights of {n}, got {len(self.springs.weights)}")
 
     def moved(self, weights: Mapping[str, float]) -> NDArray[np.floating]:
         """Vertices (n, 3), mm, with targets added; names the mesh does not have are ignored."""
@@ -155,6 +165,8 @@ class SceneAnimation:
     rotations: Mapping[str, NDArray[np.floating]] = field(default_factory=dict)
     name: str = "demo"
 
+    __repr__ = brief_repr
+
     def __post_init__(self) -> None:
         f = len(self.times)
         times = _finite("times", self.times, (f,))
@@ -182,6 +194,8 @@ class Scene:
 
     meshes: tuple[SceneMesh, ...]
     animation: SceneAnimation | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "meshes", tuple(self.meshes))

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 
 __all__ = ["GradientCheck", "check_gradient"]
@@ -40,6 +41,9 @@ class GradientCheck:
     remainders: Floats
     slopes: Floats
     passed: bool
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "steps", "remainders", "slopes")

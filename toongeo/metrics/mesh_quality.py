@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo._brief_repr import brief_repr
 from toongeo.geometry.self_intersections import self_intersections
 from toongeo.geometry.validate_mesh import validate_mesh
 
@@ -30,6 +31,8 @@ class MeshQuality:
     intersecting: NDArray[np.int64]
     folded: NDArray[np.int64]
     selected: int
+
+    __repr__ = brief_repr
 
     @property
     def intersecting_fraction(self) -> float:

@@ -8,7 +8,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["Atlas", "atlas_coordinates"]
@@ -33,6 +34,9 @@ class Atlas:
     uv: NDArray[np.float64]
     uv_faces: NDArray[np.int64]
     height: NDArray[np.float64] | None = None
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "uv", "uv_faces", "height")

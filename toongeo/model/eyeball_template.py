@@ -4,7 +4,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 
 __all__ = ["EyeballTemplate"]
 
@@ -41,6 +42,9 @@ class EyeballTemplate:
     colour: np.ndarray
     iris_angle: float
     pupil_angle: float
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, *(field.name for field in fields(self)))

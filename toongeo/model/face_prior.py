@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 
 __all__ = ["FacePrior"]
 
@@ -35,6 +35,8 @@ class FacePrior:
     mean: NDArray[np.float64]
     landmark_offsets: NDArray[np.float64]
     landmark_covariance: NDArray[np.float64]
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         for name, shape in {

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.parts import INNER_PARTS
 from toongeo.model.eyeball_template import EyeballTemplate
@@ -89,6 +90,9 @@ class MorphableModel:
     uv_faces: np.ndarray = field(default_factory=_nothing)
     eyes: tuple[EyeballTemplate, ...] = ()
     prior: FacePrior | None = None
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         if self.prior is not None and self.prior.mean.shape != (len(self.identity),):

@@ -2,7 +2,11 @@
 
 from toongeo.pipeline.align import AlignedFace as AlignedFace
 from toongeo.pipeline.align import AlignReport as AlignReport
+from toongeo.pipeline.align import DenoisedLandmarks as DenoisedLandmarks
+from toongeo.pipeline.align import LandmarkNoise as LandmarkNoise
 from toongeo.pipeline.align import align_face as align_face
+from toongeo.pipeline.align import denoise_landmarks as denoise_landmarks
+from toongeo.pipeline.align import fit_cranium as fit_cranium
 from toongeo.pipeline.fit import FaceFit as FaceFit
 from toongeo.pipeline.fit import FitOptions as FitOptions
 from toongeo.pipeline.fit import JawOptions as JawOptions
@@ -22,12 +26,14 @@ from toongeo.pipeline.hair import Hair as Hair
 from toongeo.pipeline.hair import build_hair as build_hair
 from toongeo.pipeline.hair import hair_faults as hair_faults
 from toongeo.pipeline.hair import make_room as make_room
+from toongeo.pipeline.landmarks import LandmarkEvidence as LandmarkEvidence
 from toongeo.pipeline.landmarks import LandmarkTrack as LandmarkTrack
 from toongeo.pipeline.landmarks import LandmarkTracker as LandmarkTracker
 from toongeo.pipeline.landmarks import NoFaceError as NoFaceError
 from toongeo.pipeline.landmarks import TrackedFace as TrackedFace
 from toongeo.pipeline.landmarks import detect_faces as detect_faces
 from toongeo.pipeline.landmarks import detect_landmarks as detect_landmarks
+from toongeo.pipeline.landmarks import landmark_evidence as landmark_evidence
 from toongeo.pipeline.landmarks import track_landmarks as track_landmarks
 from toongeo.pipeline.parse import ClassicalParser as ClassicalParser
 from toongeo.pipeline.parse import find_hair as find_hair

@@ -5,6 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
+from toongeo._brief_repr import brief_repr
 from toongeo.protocols.cameras import HeadCamera
 
 __all__ = ["Coefficients", "Regressor"]
@@ -33,6 +34,8 @@ class Coefficients:
     albedo: np.ndarray | None = None
     light: np.ndarray | None = None
     pose: HeadCamera | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         for name in ("identity", "expression", "albedo", "light"):

@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
+from toongeo._brief_repr import brief_repr
 from toongeo.protocols.faces import FittedFace
 
 __all__ = ["FaceLabel", "FaceParse", "FaceParser", "HairFinder", "HairMask"]
@@ -55,6 +56,8 @@ class HairMask:
     alpha: np.ndarray | None = None
     hat: np.ndarray | None = None
 
+    __repr__ = brief_repr
+
     def __post_init__(self) -> None:
         mask = np.array(self.mask)
         if mask.ndim != 2 or mask.dtype != np.bool_:
@@ -93,6 +96,8 @@ class FaceParse:
     labels: np.ndarray
     confidence: np.ndarray
     hair: HairMask | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         labels, confidence = np.array(self.labels), np.array(self.confidence, np.float32)

@@ -5,6 +5,8 @@ from typing import Protocol
 
 import numpy as np
 
+from toongeo._brief_repr import brief_repr
+
 __all__ = ["LandmarkDetection", "LandmarkDetector"]
 
 
@@ -25,6 +27,8 @@ class LandmarkDetection:
     points: np.ndarray
     confidence: np.ndarray
     score: float
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         points, confidence = np.array(self.points, np.float64), np.array(self.confidence, np.float64)

@@ -5,6 +5,8 @@ from typing import Protocol
 
 import numpy as np
 
+from toongeo._brief_repr import brief_repr
+
 __all__ = ["TextureGenerator", "TextureGeometry"]
 
 
@@ -28,6 +30,8 @@ class TextureGeometry:
     faces: np.ndarray
     uv: np.ndarray
     uv_faces: np.ndarray
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         if self.source.ndim != 2 or self.source.shape[1] != 3 or self.target.shape != self.source.shape:

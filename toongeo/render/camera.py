@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import restored
+
 __all__ = ["ScaledOrthographicCamera"]
 
 _FLIP = np.array([1.0, -1.0])  # the two rows of P: image y runs down, camera y runs up
@@ -51,6 +54,9 @@ class ScaledOrthographicCamera:
     scale: float
     rotation: NDArray[np.float64]
     translation: NDArray[np.float64]
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         scale = float(self.scale)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo._brief_repr import brief_repr
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["PerspectiveCamera"]
@@ -51,6 +52,8 @@ class PerspectiveCamera:
     rotation: NDArray[np.float64]
     translation: NDArray[np.float64]
     principal_point: NDArray[np.float64]
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         focal = float(self.focal_px)

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo._brief_repr import brief_repr
 from toongeo.render.raster.opencv_nearest import opencv_nearest
 from toongeo.render.raster.z_buffer import z_buffer
 
@@ -35,6 +36,8 @@ class Fragments:
 
     face_ids: NDArray[np.int32]
     barycentrics: NDArray[np.float32]
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         if self.face_ids.ndim != 2 or self.barycentrics.shape != (*self.face_ids.shape, 3):

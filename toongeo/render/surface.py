@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._brief_repr import brief_repr
 from toongeo.geometry.validate_mesh import validate_faces, validate_mesh, validate_vertices
 
 __all__ = ["Surface"]
@@ -44,6 +45,8 @@ class Surface:
     uv_faces: NDArray[np.int64] | None = None
     texture: NDArray[np.uint8] | None = None
     normals: NDArray[np.float64] | None = None
+
+    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         vertices, faces = validate_mesh(self.vertices, self.faces, names=("vertices", "faces"))

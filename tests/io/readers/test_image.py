@@ -206,7 +206,7 @@ def test_flipped_bytes_give_a_picture_or_a_value_error(tmp_path, rgb):
         (b"hello", "none of these"),
         (png_of_size(0, 5), "damaged|zero size|none of these"),
         (png_of_size(5, 0), "damaged|zero size|none of these"),
-        (png_of_size(100_000, 100_000), "damaged .*exceeds limit"),
+        (png_of_size(100_000, 100_000), "expected a picture of at most 67 Mpx, but .* has 10000 Mpx"),
         (encoded("TIFF", np.zeros((4, 4), np.float32)), "floating-point"),
         (encoded("TIFF", np.full((4, 4), 70_000, np.int32)), "32 bits"),
     ],
@@ -218,6 +218,24 @@ def test_refused(tmp_path, content, message):
     with pytest.raises(ValueError, match=message) as info:
         read_image(path)
     assert "portrait.png" in str(info.value)
+
+
+@pytest.mark.parametrize("side", [9_000, 10_500, 14_000])  # below what Pillow warns of, and above what it refuses
+def test_too_many_pixels_are_counted(tmp_path, side):
+    path = tmp_path / "a.png"
+    path.write_bytes(png_of_size(side, side))
+    with pytest.raises(
+        ValueError, match=f"expected a picture of at most 67 Mpx, but .*a.png has {side * side / 1e6:.0f} Mpx"
+    ):
+        read_image(path)
+
+
+def test_the_limit_can_be_set(tmp_path, rgb):
+    write_image(tmp_path / "a.png", rgb)
+    count = rgb.shape[0] * rgb.shape[1]
+    np.testing.assert_array_equal(read_image(tmp_path / "a.png", max_pixels=count), rgb)
+    with pytest.raises(ValueError, match="expected a picture of at most 0 Mpx"):
+        read_image(tmp_path / "a.png", max_pixels=count - 1)
 
 
 def test_no_such_file(tmp_path):

@@ -150,15 +150,15 @@ def test_fans_keep_the_area_of_convex_polygons(tmp_path, rng):
         ("v 1 2 nan", "line 1 .*expected 3 finite"),
         ("vt 1", "line 1 .*expected 2 finite"),
         ("v 0 0 0\nf 1 1", "line 2 .*at least 3 corners, got 2"),
-        ("v 0 0 0\nf 1 1 2", "line 2 .*index 2 is out of range, 1 elements so far"),
+        ("v 0 0 0\nf 1 1 2", "line 2 .*index 2 is out of range, 1 elements"),
         ("v 0 0 0\nf 1 1 0", "line 2 .*index 0 is out of range"),
         ("v 0 0 0\nf 1 1 -2", "line 2 .*index -2 is out of range"),
         ("v 0 0 0\nf 1/1 1/1 1/1", "line 2 .*index 1 is out of range, 0 elements"),
         ("v 0 0 0\nf a b c", "line 2 .*invalid literal"),
         ("v 0 0 0\nvt 0 0\nf 1 1 1\nf 1/1 1/1 1/x", "line 4 .*invalid literal.* 'x'"),
-        ("v 0 0 0\nf 1 1 1\nf 1 1 1\nf 1 1 7", "line 4 .*index 7 is out of range, 1 elements so far"),
-        ("v 0 0 0\nf 1 1 2\nv 0 0 0", "line 2 .*index 2 is out of range, 1 elements so far"),
-        ("v 0 0 0\nf 1 1 " + 30 * "9", "line 2 .*index 9+ is out of range, 1 elements so far"),
+        ("v 0 0 0\nf 1 1 1\nf 1 1 1\nf 1 1 7", "line 4 .*index 7 is out of range, 1 elements"),
+        ("v 0 0 0\nf 1 1 -2\nv 0 0 0", "line 2 .*index -2 is out of range"),
+        ("v 0 0 0\nf 1 1 " + 30 * "9", "line 2 .*index 9+ is out of range, 1 elements"),
         ("v 0 0 0\nf 1 1 " + 400 * "9", "line 2 .*int too large"),
         ("v 0 0 0\nvt 0 0\nf 1 1 1\nf 1/1 /1 1/1", "line 4 .*invalid literal"),
         ("v 0 0 0\nv 1 1 inf\nf 1 1 1", "line 2 .*expected 3 finite"),
@@ -181,3 +181,21 @@ def test_places(tmp_path, scene):
     with pytest.raises(OSError, match=r"cannot write .*a_texture\.png: "):
         write_obj(tmp_path / "a.obj", scene)
     assert [path.name for path in tmp_path.iterdir()] == ["a_texture.png"]
+
+
+def test_what_editors_leave_in_a_file(tmp_path):
+    """A byte order mark, comments behind numbers, and texture coordinates after the faces that use them."""
+    path = tmp_path / "a.obj"
+    faces = "f 1/1 2/2 3/3 # skin\nvt 0 0#\nvt 1 0\nvt 0 1 # end\n"
+    path.write_text("\ufeffv 0 0 0 # a corner\nv 1 0 0\nv 0 1 0\n" + faces, encoding="utf-8")
+    data = read_obj(path)
+    np.testing.assert_array_equal(data.vertices, [[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    np.testing.assert_array_equal(data.faces, [[0, 1, 2]])
+    np.testing.assert_array_equal(data.uv[data.uv_faces[0]], [[0, 0], [1, 0], [0, 1]])
+
+
+def test_one_huge_polygon_among_many_takes_no_memory(tmp_path):
+    path = tmp_path / "a.obj"
+    path.write_text("v 0 0 0\n" + "f 1 1 1\n" * 20_000 + "f" + " 1" * 5_000 + "\n")
+    with pytest.raises(ValueError, match="line 20002 .*a polygon of 5000 corners among 20001 polygons"):
+        read_obj(path)

@@ -28,6 +28,26 @@ def test_presets_and_other_names_are_told_apart(tmp_path, eyes):
     assert vrm["lookAt"]["rangeMapVerticalUp"] == {"inputMaxValue": 90.0, "outputScale": 25.0}
 
 
+def test_emotions_take_the_place_of_what_moves_the_same_parts(tmp_path, eyes):
+    """Otherwise players add a blink to a wide eye, which then stays open."""
+    head = next(mesh for mesh in eyes.meshes if mesh.target_names)
+    names = ("jawOpen", "eyeWideLeft", "mouthSmileLeft")
+    targets = np.zeros((3, *head.vertices.shape))
+    moving = replace(head, targets=targets, target_names=names)
+    scene = Scene(tuple(moving if mesh is head else mesh for mesh in eyes.meshes))
+    wide, open_, smile = ({name: 1.0} for name in ("eyeWideLeft", "jawOpen", "mouthSmileLeft"))
+    write_vrm(
+        tmp_path / "a.vrm", scene, {"surprised": wide | open_, "happy": smile, "blink": wide, "aa": open_, "mine": wide}
+    )
+    vrm = read_glb(tmp_path / "a.vrm").json["extensions"]["VRMC_vrm"]["expressions"]
+    found = {name: entry for group in vrm.values() for name, entry in group.items()}
+    kinds = ("overrideBlink", "overrideLookAt", "overrideMouth")
+    assert {name: [entry[kind] for kind in kinds] for name, entry in found.items()} == {
+        "surprised": ["blend", "none", "blend"],
+        **{name: ["none", "none", "none"] for name in ("happy", "blink", "aa", "mine")},
+    }
+
+
 def test_it_is_valid_and_always_the_same(tmp_path, eyes, node):
     write_vrm(tmp_path / "a.vrm", eyes, {"aa": {"jawOpen": 1.0}}, normal_deltas=True, picture="jpeg")
     write_vrm(tmp_path / "b.vrm", eyes, {"aa": {"jawOpen": 1.0}}, normal_deltas=True, picture="jpeg")

@@ -57,6 +57,12 @@ def test_more_freedom_less_distance(points):
         assert 0 <= min(face.expression_weights().values()) <= max(face.expression_weights().values()) <= 1
         assert face.report.prior_loss == face.report.prior_weight == 0
         assert face.report.loss == face.report.landmark_loss
+        assert fit.report.seconds < face.report.seconds < fit.report.seconds + 60
+        assert face.report.evaluations > fit.report.evaluations
+        misfit = (face.project(face.vertices[face.landmark_vertices]) - points)[17:]
+        eyes = np.linalg.norm(points[36] - points[45])
+        assert face.report.rms_px == pytest.approx(np.sqrt((misfit**2).sum(axis=1).mean()))
+        assert face.report.rms_percent == pytest.approx(100 * face.report.rms_px / eyes)
 
 
 @pytest.mark.parametrize("adjust", ADJUSTMENTS)

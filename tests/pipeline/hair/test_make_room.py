@@ -28,6 +28,25 @@ def test_a_crown_taller_than_the_hair_sinks(avatar, mask):
     assert rows[0] + 40 <= top <= rows[0] + 40 + 12
 
 
+def test_a_face_is_no_broader_than_what_strands_beside_it_leave(avatar, mask):
+    """Below the eyes a strand of 7 mm over the outline of the cheek stands beside the head, not before it."""
+    face = avatar.face
+    jaw = face.vertices[face.landmark_vertices[[2, 14]]]  # at the height of the nose
+    px = np.rint(face.project(jaw)).astype(int)
+    per_mm = np.abs(px[1, 0] - px[0, 0]) / np.linalg.norm(jaw[1] - jaw[0])
+    wide = mask.copy()
+    inner = round(7 * per_mm)
+    top = np.flatnonzero(mask.any(1))[-1]
+    wide[top : px[:, 1].max(), : px[0, 0] + inner] = wide[top : px[:, 1].max(), px[1, 0] - inner :] = True
+    moved = make_room(face, avatar.rig, wide)[0].vertices - make_room(face, avatar.rig, mask)[0].vertices
+    side = face.region("face") & (np.abs(face.vertices[:, 1] - jaw[:, 1].mean()) < 8)
+    outermost = side & (np.abs(face.vertices[:, 0]) > 0.95 * np.abs(face.vertices[side, 0]).max())
+    inwards = -moved[outermost, 0] * np.sign(face.vertices[outermost, 0])
+    assert inwards.mean() > 2.0
+    middle = side & (np.abs(face.vertices[:, 0]) < 20)
+    assert np.abs(moved[middle]).max() < 0.1
+
+
 def test_no_hair_no_room(avatar, mask):
     face, rig = make_room(avatar.face, avatar.rig, np.zeros_like(mask), avatar.parse)
     assert face is avatar.face

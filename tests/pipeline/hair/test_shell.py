@@ -44,6 +44,19 @@ def test_outlines_of_parts_are_edges(mesh):
     assert np.abs(np.abs(np.linalg.norm(P[rim] - 60 * CELL_MM, axis=1) - 32.5) - 17.5).max() < 0.8
 
 
+def test_an_outline_loses_notches_and_keeps_strands():
+    """Noise of a pixel is gone from the rim; a tip that sticks out 12 mm is not."""
+    y, x = (np.mgrid[:120, :120] - 60) * CELL_MM
+    angle = np.arctan2(y, x)
+    ragged = np.hypot(x, y) <= RADIUS + 0.9 * np.sin(24 * angle)
+    strand = (np.abs(x) < 5) & (y > 0) & (y < RADIUS + 12)
+    P, T = planar_mesh(PLANE, ragged | strand, [])
+    Q = P[np.unique(boundary_edges(T))] - 60 * CELL_MM
+    round_part = np.hypot(*Q.T)[np.arctan2(Q[:, 1], Q[:, 0]) < 0]
+    assert np.abs(round_part - RADIUS).max() < 0.7 < 0.9
+    assert Q[:, 1].max() > RADIUS + 12 - 1.5
+
+
 def test_halved_keeps_area_and_puts_points_in_the_middle(mesh, rng):
     P, T = mesh
     split = rng.random(len(edges_of(T)[0])) < 0.3

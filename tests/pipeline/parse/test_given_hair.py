@@ -26,6 +26,18 @@ def test_bool_levels_and_file_are_the_same_mask(drawn, tmp_path):
         assert found.trusted and found.reasons == ()
 
 
+def test_levels_from_128_on_are_hair():
+    levels = np.arange(256).reshape(16, 16)
+    np.testing.assert_array_equal(given_hair(levels, (16, 16)).mask, levels >= 128)
+
+
+def test_a_coloured_file_is_hair_where_any_channel_is(tmp_path, drawn):
+    img = np.zeros((*SHAPE, 3), np.uint8)
+    img[drawn, 1] = 255
+    write_image(tmp_path / "hair.png", img)
+    np.testing.assert_array_equal(given_hair(tmp_path / "hair.png", SHAPE).mask, drawn)
+
+
 def test_the_given_array_stays_writable_and_apart(drawn):
     found = given_hair(drawn, SHAPE)
     drawn[:] = True

@@ -163,12 +163,6 @@ def test_bad_input_is_refused(drawn_face, call):
         call(drawn_face.img, drawn_face.landmarks[:51])
 
 
-@pytest.mark.parametrize("size", [10, float("nan")])
-def test_a_head_too_small_to_cut_is_refused(size):
-    with pytest.raises(ValueError, match="head_px: expected at least 64"):
-        ClassicalParser(head_px=size)
-
-
 def test_arguments_are_not_written_to(drawn_face):
     img, landmarks = drawn_face.img.copy(), drawn_face.landmarks.copy()
     parse_face(img, landmarks)

@@ -38,3 +38,23 @@ def test_the_skull_does_not_drift(rig, model):
 def test_names_are_those_of_the_model(rig, model):
     assert rig.names == model.expression_names[:46]
     assert rig.deltas.shape == (46, len(model.mean), 3)
+
+
+def test_where_the_template_is_still_in_an_expression_so_is_the_face(transferred, model):
+    """Of each of the 46, on a face drawn unlike the template, whose gradients add up to drift."""
+    rig, motion = transferred("manga_girl"), np.linalg.norm(model.expression[:46], axis=2)
+    for name, moved, template in zip(rig.names, np.linalg.norm(rig.deltas, axis=2), motion, strict=True):
+        still = template < 0.002 * template.max()
+        assert (moved[still] <= 1.5 * template[still] + 1e-6).all(), name  # as much as the template, in its size
+    jaw = rig.names.index("jawOpen")
+    assert np.linalg.norm(rig.deltas[jaw], axis=1).max() > 5
+
+
+def test_an_opening_jaw_leaves_the_lids_alone(avatars, model):
+    """After all contacts were fitted, too; of the height of the eye."""
+    rig = avatars("astronaut").rig
+    jaw = rig.deltas[rig.names.index("jawOpen")]
+    for upper, lower, lids in (((37, 38), (41, 40), range(36, 42)), ((43, 44), (47, 46), range(42, 48))):
+        edges = (rig.neutral[model.landmarks[list(edge)]] for edge in (upper, lower))
+        height = np.linalg.norm(np.subtract(*edges), axis=1).mean()
+        assert np.linalg.norm(jaw[model.landmarks[list(lids)]], axis=1).max() <= 0.05 * height

@@ -16,6 +16,8 @@ def test_bad_weights_are_refused():
         weight_vector({"jawopen": 1.0}, NAMES)
     with pytest.raises(ValueError, match="weights: expected 3 values, got shape"):
         weight_vector(np.zeros(46), NAMES)
+    with pytest.raises(ValueError, match="weights: no expression 'zzz'$"):
+        weight_vector({"zzz": 1.0}, NAMES)
     with pytest.raises(ValueError, match="weights: no expression 0"):
         weight_vector({0: 1.0}, NAMES)
     with pytest.raises(ValueError, match="weights: expected a number for jawOpen, got '1'"):

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.caricature.baselines.linear_fit import LinearFit, equations, posed, ridge_solution
 from toongeo.geometry.one_thread import one_thread
@@ -43,6 +44,9 @@ class BilinearModel:
     expressions: NDArray[np.float32]
     left: Floats
     right: Floats
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "mean", "identities", "expressions", "left", "right")

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
@@ -38,6 +39,9 @@ class LinearFit:
     vertices: Floats
     camera: HeadCamera
     landmark_vertices: NDArray[np.int64]
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "vertices", "landmark_vertices")

@@ -11,7 +11,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.caricature.blendshapes.landmark_mapper import PartMapper
 from toongeo.caricature.blendshapes.sparse_expression import sparse_expression
@@ -61,6 +62,9 @@ class InitialBlendshapes:
     landmark_vertices: NDArray[np.int64]
     source: CaricatureFit
     normal: FaceFit
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "vertices", "landmarks", "landmark_vertices")

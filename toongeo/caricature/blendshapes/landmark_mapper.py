@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Delaunay
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.caricature.blendshapes.sparse_expression import sparse_expression
 from toongeo.io.landmark_array import landmark_array
@@ -55,6 +55,8 @@ class Exaggeration:
     drawn: Floats
     frames: Floats
     between: NDArray[np.int64]
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "normal", "drawn", "frames", "between")

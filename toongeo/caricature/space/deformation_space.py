@@ -9,15 +9,15 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse.linalg import SuperLU
 
+from toongeo._brief_repr import brief_repr
 from toongeo.arrays import Floats
 from toongeo.caricature.space.encode_shapes import component_means, encode_shapes
 from toongeo.caricature.space.encoded_shapes import STORED, EncodedShapes
 from toongeo.caricature.space.fit_weights import WeightFit, WeightProblem
 from toongeo.caricature.space.space_file import read_arrays, write_arrays
 from toongeo.geometry.one_thread import one_thread
-from toongeo.geometry.operators.factor import factor_spd, solve
+from toongeo.geometry.operators.factor import SpdFactor, factor_spd, solve
 from toongeo.geometry.validate_mesh import validate_vertices
 
 __all__ = ["DeformationSpace"]
@@ -40,6 +40,8 @@ class DeformationSpace(EncodedShapes):
     >>> np.ptp(space.vertices([2.0, 0.5]), axis=0).round(5)
     array([3., 1., 2.])
     """
+
+    __repr__ = brief_repr
 
     @classmethod
     def from_meshes(
@@ -112,7 +114,7 @@ class DeformationSpace(EncodedShapes):
         return np.setdiff1d(np.arange(len(self.reference)), np.unique(self.component, return_index=True)[1])
 
     @cached_property
-    def _factor(self) -> SuperLU:
+    def _factor(self) -> SpdFactor:
         return factor_spd(self.rings.laplacian[self._free][:, self._free])
 
     def placed(self, displacement: Floats, w: Floats) -> Floats:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.caricature.space.deformation_representation import full, packed
 from toongeo.geometry import validate_mesh, vertex_components
@@ -48,6 +48,8 @@ class EncodedShapes:
     bends: NDArray[np.float32]
     offsets: Floats
     _rings: OneRings | None = field(default=None, repr=False)
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         V, F = validate_mesh(self.reference, self.faces, names=("reference", "faces"))

@@ -8,7 +8,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.caricature.space.deformation_space import DeformationSpace
 from toongeo.model.anatomy.parts import INNER_PARTS
 from toongeo.model.default_model import default_model
@@ -39,6 +40,9 @@ class FaceSpace:
     model: MorphableModel
     space: DeformationSpace
     vertices: NDArray[np.int64]
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         if self.space.reference.shape != (len(self.vertices), 3):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.caricature.space.deformation_representation import full, packed
 from toongeo.caricature.space.encoded_shapes import EncodedShapes
@@ -45,6 +45,8 @@ class WeightFit:
     energy: float
     energies: tuple[float, ...]
     converged: bool
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "w")

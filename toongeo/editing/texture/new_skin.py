@@ -8,14 +8,14 @@ from toongeo.editing.texture.lid_skin import LINE, lash_colour, lid_zones
 from toongeo.editing.texture.openings import lid_closing, lips_parted
 from toongeo.editing.texture.picture_warp import Stroke
 from toongeo.geometry import vertex_normals
-from toongeo.model import MorphableModel, atlas_coordinates
+from toongeo.model import MorphableModel
 from toongeo.model.anatomy.lid_rings import lid_rings
 from toongeo.model.anatomy.parts import MOUTH_PARTS, SIDES
 from toongeo.pipeline import Rig
+from toongeo.pipeline.texture.vertex_colours import vertex_colours
 from toongeo.protocols import TextureGeometry
-from toongeo.render import sample_image, uv_to_px
 
-__all__ = ["NewSkin", "vertex_colours"]
+__all__ = ["NewSkin"]
 
 _INWARD = 0.35  # cosine to the front below which a lip is its inner side
 _FAINT = 0.02  # less of a line is not seen
@@ -84,12 +84,3 @@ class NewSkin:
             for name, strength in zip(SIDES, closing, strict=True)
             if strength > _FAINT
         ]
-
-
-def vertex_colours(model: MorphableModel, texture: np.ndarray) -> np.ndarray:
-    """Colours (n, 3) float32, 0-255, that a texture has at the vertices."""
-    atlas = atlas_coordinates(model)
-    colours = np.zeros((len(model.mean), 3), np.float32)
-    at_corners = sample_image(texture, uv_to_px(atlas.uv, len(texture), len(texture)))
-    colours[model.faces] = at_corners[atlas.uv_faces]
-    return colours

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.model.anatomy.parts import MOUTH_PARTS
 from toongeo.pipeline import AlignedFace, Eyes
 from toongeo.protocols import Camera
@@ -51,6 +51,8 @@ class PictureMesh:
     soft: np.ndarray
     px: np.ndarray
     camera: Camera
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "vertices", "faces", "labels", "uv", "seen", "soft", "px")

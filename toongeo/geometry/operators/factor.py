@@ -5,27 +5,42 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import splu
 
 from toongeo.geometry.one_thread import one_thread
 
-__all__ = ["factor_spd", "solve"]
+__all__ = ["SpdFactor", "factor_spd", "solve"]
 
 # Right-hand sides a call: supernodes make a few at once cheaper than one by one, many fall out of the cache.
 _CHUNK = 16
 
 
-def factor_spd(A: sp.spmatrix) -> SuperLU:
-    """Factor a symmetric positive definite matrix without pivoting.
+class SpdFactor:
+    """The factor of a symmetric positive definite matrix, without pivoting; a copy or a pickle of it factors anew.
 
     The ordering alone is not enough: with SuperLU's default pivoting the fill-in explodes.
     """
-    with one_thread():
-        symmetric = {"SymmetricMode": True}
-        return splu(sp.csc_matrix(A), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
+
+    def __init__(self, A: sp.csc_matrix) -> None:
+        self._A = A
+        with one_thread():
+            symmetric = {"SymmetricMode": True}
+            self._factor = splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
+
+    def __reduce__(self) -> tuple[type, tuple[sp.csc_matrix]]:
+        return SpdFactor, (self._A,)
+
+    def solve(self, b: NDArray[np.float64]) -> NDArray[np.float64]:
+        """``A^-1 b`` for (n,) or (n, k) right-hand sides, at once."""
+        return np.asarray(self._factor.solve(b))
 
 
-def solve(factor: SuperLU, B: NDArray[np.float64]) -> NDArray[np.float64]:
+def factor_spd(A: sp.spmatrix) -> SpdFactor:
+    """Factor a symmetric positive definite matrix without pivoting."""
+    return SpdFactor(sp.csc_matrix(A))
+
+
+def solve(factor: SpdFactor, B: NDArray[np.float64]) -> NDArray[np.float64]:
     """``A^-1 B`` for (n, k) right-hand sides."""
     X = np.empty(B.shape)
     with one_thread():

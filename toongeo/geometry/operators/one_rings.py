@@ -8,7 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.geometry.operators.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.operators.small_matrices import product
@@ -54,6 +55,9 @@ class OneRings:
     _across: Floats  # (3, n) two-ring Gram^-1 normal
     _inverse: Floats  # (3, 3, n) of the tied Gram
     _tie: Floats  # (n,)
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "V", "F", "gram", "normal", "flat")

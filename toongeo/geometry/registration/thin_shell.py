@@ -7,12 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import SuperLU
 
 from toongeo.arrays import Floats
 from toongeo.geometry.facing_surface import FACING, FacingSurface
 from toongeo.geometry.operators.cotangent_laplacian import cotangent_laplacian
-from toongeo.geometry.operators.factor import factor_spd, solve
+from toongeo.geometry.operators.factor import SpdFactor, factor_spd, solve
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 
 __all__ = ["ThinShell"]
@@ -72,7 +71,7 @@ class ThinShell:
         rows: NDArray[np.int64],
         stride: int,
         smooth: sp.csr_matrix,
-        factor: SuperLU,
+        factor: SpdFactor,
         to_points: Floats,
     ) -> Floats:
         """Displacements (n, 3) from rest that bring the vertices ``rows``, now at X, nearer to their partners.
@@ -99,7 +98,7 @@ class ThinShell:
         return _conjugate_gradients(system, to_points + drawn(partners - rest[rows]), X - rest, factor)
 
 
-def _conjugate_gradients(system: Callable[[Floats], Floats], right: Floats, x: Floats, factor: SuperLU) -> Floats:
+def _conjugate_gradients(system: Callable[[Floats], Floats], right: Floats, x: Floats, factor: SpdFactor) -> Floats:
     """A few preconditioned steps from x towards ``system(x) = right``."""
     residual = right - system(x)
     limit = _PRECISION**2 * float((right**2).sum())

@@ -26,6 +26,16 @@ class GlbBuilder:
         self.json: dict[str, Any] = {"asset": {"version": "2.0", "generator": "toongeo"}}
         self._binary = bytearray()
 
+    @classmethod
+    def extending(cls, document: dict[str, Any], content: bytes) -> "GlbBuilder":
+        """A builder that goes on where a file ends: its JSON, and the bytes of the file itself."""
+        builder = cls()
+        builder.json = document
+        start = 20 + struct.unpack_from("<I", content, 12)[0]
+        if start < len(content):
+            builder._binary += content[start + 8 : start + 8 + struct.unpack_from("<I", content, start)[0]]
+        return builder
+
     def add(self, kind: str, **entry: Any) -> int:
         """Append to one of the document's lists; properties that are None are left out."""
         entries = self.json.setdefault(kind, [])

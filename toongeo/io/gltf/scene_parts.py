@@ -22,7 +22,9 @@ _STEPS = 2048  # of the greatest coordinate, as which displacements are quantize
 _BYTE = 127  # what 1 is as a normalized integer of 8 bits
 # Below this a change of a normal cannot be seen: 0.06 degrees.
 _NORMAL_TOLERANCE = 1e-3
-_SAMPLER = {"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}  # trilinear, clamped
+_BORDER = 1e-3  # of the picture: uv that are off by less are those of its border
+_TRILINEAR = {"magFilter": 9729, "minFilter": 9987}
+_CLAMPED, _REPEATED = 33071, 10497  # beyond the picture: its border goes on, or it begins again
 
 
 @dataclass(frozen=True)
@@ -137,19 +139,25 @@ def _material(builder: GlbBuilder, mesh: SceneMesh, textures: dict[bytes, int], 
         "roughnessFactor": float(mesh.roughness),
     }
     if mesh.texture is not None:
-        look["baseColorTexture"] = {"index": _texture(builder, mesh.texture, textures, picture)}
+        tiled = mesh.uv is not None and bool((np.abs(mesh.uv - 0.5) > 0.5 + _BORDER).any())
+        look["baseColorTexture"] = {"index": _texture(builder, mesh.texture, textures, picture, tiled=tiled)}
     both = True if mesh.double_sided else None
     return builder.add("materials", name=mesh.name, pbrMetallicRoughness=look, doubleSided=both)
 
 
-def _texture(builder: GlbBuilder, pixels: NDArray[np.uint8], textures: dict[bytes, int], picture: Picture) -> int:
-    key = str(pixels.shape).encode() + pixels.tobytes()
+def _texture(
+    builder: GlbBuilder, pixels: NDArray[np.uint8], textures: dict[bytes, int], picture: Picture, *, tiled: bool
+) -> int:
+    """The picture, once for all meshes that have it; it repeats where uv leave 0..1, as those of tiles do."""
+    key = str((pixels.shape, tiled)).encode() + pixels.tobytes()
     if key not in textures:
-        if not textures:
-            builder.add("samplers", **_SAMPLER)
+        wrap = _REPEATED if tiled else _CLAMPED
+        sampler = _TRILINEAR | {"wrapS": wrap, "wrapT": wrap}
+        samplers = builder.json.get("samplers", [])
+        number = samplers.index(sampler) if sampler in samplers else builder.add("samplers", **sampler)
         view = builder.view(encode_image(pixels, f".{picture}"))
         image = builder.add("images", bufferView=view, mimeType=f"image/{picture}")
-        textures[key] = builder.add("textures", source=image, sampler=0)
+        textures[key] = builder.add("textures", source=image, sampler=number)
     return textures[key]
 
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._brief_repr import brief_repr
 from toongeo.io.gltf.glb_builder import COLUMNS, COMPONENTS, NO_CHECKSUM, checksum_entry
 
 __all__ = ["GlbDocument", "read_glb"]
@@ -42,6 +43,8 @@ class GlbDocument:
     images: tuple[bytes, ...]
     attachment: bytes | None = None
     intact: bool = False
+
+    __repr__ = brief_repr
 
 
 def read_glb(path: str | os.PathLike[str]) -> GlbDocument:

@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import struct
 import zlib
 from pathlib import Path
@@ -27,11 +28,11 @@ _DECODE_ERRORS = (
     OverflowError,
     struct.error,
     zlib.error,
-    Image.DecompressionBombError,
 )
+_MAX_PIXELS = 2**26  # 8192 x 8192, more than cameras give; some 0.5 GB while it is read
 
 
-def read_image(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
+def read_image(path: str | os.PathLike[str], *, max_pixels: int = _MAX_PIXELS) -> NDArray[np.uint8]:
     """Read a picture as it is meant to be seen.
 
     Pillow decodes it (OpenCV either ignores the EXIF rotation or drops the alpha channel).
@@ -53,7 +54,7 @@ def read_image(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
     OSError
         If the file is missing or cannot be read.
     ValueError
-        If it is empty, truncated, damaged, or no picture of these formats.
+        If it is empty, truncated, damaged, too large, or no picture of these formats.
 
     Examples
     --------
@@ -69,8 +70,17 @@ def read_image(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
         raise ValueError(f"path: expected a picture, got the empty file {path}")
     try:
         with Image.open(io.BytesIO(content), formats=_FORMATS) as image:
-            image.load()
-            pixels = _rgb(ImageOps.exif_transpose(image))
+            if image.width * image.height <= max_pixels:
+                image.load()
+                pixels = _rgb(ImageOps.exif_transpose(image))
+            else:
+                raise Image.DecompressionBombError(f"{image.width * image.height} pixels")
+    except (Image.DecompressionBombError, Image.DecompressionBombWarning) as error:  # Pillow has a limit as well
+        found = re.search(r"(\d+) pixels", str(error))
+        got = f"{int(found[1]) / 1e6:.0f} Mpx" if found else "more"
+        raise ValueError(
+            f"path: expected a picture of at most {max_pixels / 1e6:.0f} Mpx, but {path} has {got}"
+        ) from None
     except _DECODE_ERRORS as error:
         reason = "none of these" if isinstance(error, Image.UnidentifiedImageError) else f"damaged ({error})"
         raise ValueError(f"path: expected a picture ({', '.join(_FORMATS)}), but {path} is {reason}") from error

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.io.landmarks.landmark_schemes import SCHEMES
 from toongeo.io.readers.landmarks.landmark_readers import raw_landmarks
 from toongeo.io.readers.landmarks.placed_landmarks import PictureSize, placed_landmarks
@@ -42,6 +43,9 @@ class LandmarkFile:
     frames: int
     faces: int
     message: str
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "points")

@@ -8,9 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from toongeo._brief_repr import brief_repr
 from toongeo.arrays import Floats, Integers
 
 __all__ = ["ObjData", "read_obj"]
+
+_MOST_CORNERS = 5 * 10**7  # of all polygons, each counted as the largest: 0.8 GB
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +42,8 @@ class ObjData:
     uv_faces: Integers
     objects: tuple[str, ...]
     face_object: Integers
+
+    __repr__ = brief_repr
 
     def triangles(self) -> tuple[Integers, Integers, Integers]:
         """Each polygon as a fan about its first corner.
@@ -81,13 +86,15 @@ def read_obj(path: str | os.PathLike[str]) -> ObjData:
         If a line cannot be understood (says which), an index is out of range, or there is no face.
     """
     # Bytes that are not UTF-8 occur in names and comments of old files, where they do no harm.
-    text = Path(path).read_text(encoding="utf-8", errors="replace").replace("\\\n", " ")
+    text = Path(path).read_text(encoding="utf-8-sig", errors="replace").replace("\\\n", " ")
     lines = text.splitlines()
     found = {"v": _Rows(3), "vt": _Rows(2), "f": _Rows(sys.maxsize)}
     named: list[int] = []
     names: list[str] = []
     for number, line in enumerate(lines):
         words = line.split()
+        if "#" in line and words[0] in found:  # what stands behind it is for people
+            words = line.partition("#")[0].split()
         keyword = words.pop(0) if words else ""
         if keyword in found:
             rows = found[keyword]
@@ -157,7 +164,10 @@ def _polygons(rows: _Rows, vertices: list[int], uv: list[int]) -> tuple[Integers
     texts = {text: k for k, text in enumerate(dict.fromkeys(rows.words))}
     corner = np.array([texts[word] for word in rows.words], dtype=np.int64)
     parts = [text.split("/", 2) for text in texts]
-    inside = np.arange(sizes.max(initial=3)) < sizes[:, None]
+    largest = int(sizes.max(initial=3))
+    if largest * len(sizes) > _MOST_CORNERS:
+        raise _LineError(rows.at[sizes.argmax()], f"a polygon of {largest} corners among {len(sizes)} polygons")
+    inside = np.arange(largest) < sizes[:, None]
     padded = np.full((2, *inside.shape), -1, dtype=np.int64)
     padded[0, inside] = _indices([part[0] for part in parts], corner, rows, vertices)
     padded[1, inside] = _indices([part[1] if any(part[1:2]) else None for part in parts], corner, rows, uv)
@@ -174,10 +184,10 @@ def _indices(texts: Sequence[str | None], corner: Integers, rows: _Rows, element
     absent = np.array([text is None for text in texts], dtype=bool)[corner]
     so_far = np.searchsorted(elements, rows.at).repeat(rows.sizes)
     index = np.where(given > 0, given - 1, so_far + given)  # a negative number counts from the latest so far
-    wrong = ~absent & ((given == 0) | (index < 0) | (index >= so_far))
+    wrong = ~absent & ((given == 0) | (index < 0) | (index >= len(elements)))
     if wrong.any():
         first = wrong.argmax()
-        raise _LineError(line[first], f"index {texts[corner[first]]} is out of range, {so_far[first]} elements so far")
+        raise _LineError(line[first], f"index {texts[corner[first]]} is out of range, {len(elements)} elements")
     return np.where(absent, -1, index).astype(np.int64)
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.encode_image import encode_image
 from toongeo.io.scene import METRES, Scene, SceneMesh
@@ -17,6 +18,7 @@ from toongeo.io.scene import METRES, Scene, SceneMesh
 __all__ = ["write_usdz"]
 
 _HEADER = 30  # bytes of a zip entry before its name
+_LEAST_TURN = 0.002  # of a normal's coordinate: half a level of a picture
 _PADDING = 0x1986  # kind of extra field that USD itself pads with
 
 
@@ -139,24 +141,37 @@ def _mesh(usd: Any, stage: Any, path: str, mesh: SceneMesh, tolerance_mm: float)
         prim.CreateDoubleSidedAttr(True)
     prim.CreateSubdivisionSchemeAttr(usd.UsdGeom.Tokens.none)
     prim.CreateExtentAttr(usd.UsdGeom.PointBased.ComputeExtent(points))
+    normals = _normals(mesh.vertices, mesh.faces)
+    prim.CreateNormalsAttr(_points(usd, normals if mesh.normals is None else mesh.normals))
+    prim.SetNormalsInterpolation(usd.UsdGeom.Tokens.vertex)  # without them programs show every triangle
     if mesh.uv is not None and mesh.uv_faces is not None:
         kinds = usd.Sdf.ValueTypeNames.TexCoord2fArray
         uv = usd.UsdGeom.PrimvarsAPI(prim).CreatePrimvar("st", kinds, usd.UsdGeom.Tokens.faceVarying)
         uv.Set(usd.Vt.Vec2fArray.FromNumpy(np.ascontiguousarray(mesh.uv, np.float32)))
         uv.SetIndices(usd.Vt.IntArray.FromNumpy(mesh.uv_faces.ravel().astype(np.int32)))
     if mesh.targets is not None:
-        _blend_shapes(usd, stage, path, prim, mesh, tolerance_mm)
+        _blend_shapes(usd, stage, path, prim, mesh, normals, tolerance_mm)
     return prim
 
 
-def _blend_shapes(usd: Any, stage: Any, path: str, prim: Any, mesh: SceneMesh, tolerance_mm: float) -> None:
+def _normals(V: np.ndarray, F: np.ndarray) -> np.ndarray:
+    """(n, 3) of unit length; forwards where a vertex has none."""
+    normals = vertex_normals(V, F)
+    return np.where(normals.any(axis=1, keepdims=True), normals, [0.0, 0.0, 1.0])
+
+
+def _blend_shapes(
+    usd: Any, stage: Any, path: str, prim: Any, mesh: SceneMesh, normals: np.ndarray, tolerance_mm: float
+) -> None:
     assert mesh.targets is not None
     names, paths = _identifiers(usd, mesh.target_names), []
     for name, delta in zip(names, mesh.targets, strict=True):
-        moved = np.flatnonzero((np.abs(delta) > tolerance_mm).any(axis=1))
+        turned = _normals(mesh.vertices + delta, mesh.faces) - normals
+        moved = np.flatnonzero(((np.abs(delta) > tolerance_mm) | (np.abs(turned) > _LEAST_TURN)).any(axis=1))
         moved = moved if len(moved) else np.zeros(1, int)  # programs drop a shape without points, and so its name
         shape = usd.UsdSkel.BlendShape.Define(stage, f"{path}/{name}")
         shape.CreateOffsetsAttr(_points(usd, delta[moved] * METRES))
+        shape.CreateNormalOffsetsAttr(_points(usd, turned[moved]))
         shape.CreatePointIndicesAttr(usd.Vt.IntArray.FromNumpy(moved.astype(np.int32)))
         paths.append(shape.GetPath())
     binding = usd.UsdSkel.BindingAPI.Apply(prim.GetPrim())

@@ -16,6 +16,7 @@ from toongeo.io.gltf.glb_builder import VERTICES, GlbBuilder
 from toongeo.io.gltf.scene_parts import GlbOptions, Picture, add_scene
 from toongeo.io.scene import METRES, Scene
 from toongeo.io.writers.vrm_meta import VrmMeta
+from toongeo.io.writers.vrm_springs import followed_bones, spring_entry, spring_rows
 
 __all__ = ["write_vrm"]
 
@@ -42,6 +43,15 @@ _PRESETS = (
 )
 
 
+_EMOTIONS = ("happy", "angry", "sad", "relaxed", "surprised")
+# Targets by the beginning of their names; a wide eye does not close in a blink, an open jaw opens further in a vowel.
+_OVERRIDES = {
+    "overrideBlink": ("eyeBlink", "eyeWide", "eyeSquint"),
+    "overrideLookAt": ("eyeLook",),
+    "overrideMouth": ("jawOpen", "mouthFunnel", "mouthPucker"),
+}
+
+
 def write_vrm(
     path: str | os.PathLike[str],
     scene: Scene,
@@ -57,7 +67,8 @@ def write_vrm(
 
     The bones that a humanoid must have are there, in T-pose where those of an adult of 1.7 m are, in metres, the
     ground at y = 0 and the face along +Z. All meshes are skinned to the head's bone, neck included; ``eye_left`` and
-    ``eye_right`` to bones of their own at their pivots, which turn them.
+    ``eye_right`` to bones of their own at their pivots, which turn them. Meshes with ``springs``
+    have the bones of these, which hang from the head's and swing (``VRMC_springBone``).
 
     Parameters
     ----------
@@ -91,7 +102,7 @@ def write_vrm(
     # Skins hold the places of bones, and what they move stands on its own.
     still = Scene(tuple(replace(mesh, pivot=None, parent=None) for mesh in scene.meshes))
     add_scene(builder, still, GlbOptions(normal_deltas=normal_deltas, tolerance_mm=tolerance_mm, picture=picture))
-    bones = _add_bones(builder, scene)
+    bones, nodes = _add_bones(builder, scene)
     head = _bones()["Head"][2]
     middle = np.mean([_pivot(scene, eye) for _, eye in _EYES.values()], axis=0)
     builder.use("VRMC_vrm")
@@ -107,6 +118,10 @@ def write_vrm(
             "lookAt": _look_at((middle - head) * METRES, *gaze_degrees),
         }
     }
+    springs = spring_entry(scene, nodes)
+    if springs is not None:
+        builder.use("VRMC_springBone")
+        builder.json["extensions"]["VRMC_springBone"] = springs
     atomic_write({path: builder.encode()})
 
 
@@ -121,8 +136,14 @@ def _binds(scene: Scene, name: str, weights: Mapping[str, float]) -> dict[str, A
         for target, weight in weights.items()
         if target in mesh.target_names
     ]
-    override = {"isBinary": False, "overrideBlink": "none", "overrideLookAt": "none", "overrideMouth": "none"}
-    return {**({"morphTargetBinds": binds} if binds else {}), **override}
+    entry: dict[str, Any] = {"morphTargetBinds": binds} if binds else {}
+    return entry | {"isBinary": False} | {key: _override(name, weights, parts) for key, parts in _OVERRIDES.items()}
+
+
+def _override(name: str, weights: Mapping[str, float], parts: tuple[str, ...]) -> str:
+    """Whether an emotion takes the place of what moves the same parts: players add both otherwise."""
+    moves = any(target.startswith(parts) for target, weight in weights.items() if weight)
+    return "blend" if name in _EMOTIONS and moves else "none"
 
 
 def _look_at(offset: NDArray[np.floating], sideways: float, updown: float) -> dict[str, Any]:
@@ -139,38 +160,40 @@ def _look_at(offset: NDArray[np.floating], sideways: float, updown: float) -> di
     }
 
 
-def _add_bones(builder: GlbBuilder, scene: Scene) -> dict[str, int]:
-    """The bones, and the skin of the meshes, whose nodes are the first; the node of each by VRM's name."""
+def _add_bones(builder: GlbBuilder, scene: Scene) -> tuple[dict[str, int], dict[str, int]]:
+    """The bones, and the skin of the meshes, whose nodes are the first; the node of each by VRM's name, and by ours."""
     nodes = builder.json["nodes"]
     places: dict[str, NDArray[np.floating]] = {}
     by_name, humanoid = {}, {}
     rows: list[tuple[str, str, str, NDArray[np.floating]]] = [(name, *row) for name, row in _bones().items()]
     rows += [(name, bone, "Head", _pivot(scene, eye)) for bone, (name, eye) in _EYES.items()]
+    rows += spring_rows(scene, "Head")
     for name, bone, parent, place in rows:
         above = places.get(parent, np.array([0.0, -_GROUND_MM, 0.0]))
         index = builder.add("nodes", name=name, translation=((place - above) * METRES).tolist())
-        places[name], by_name[name], humanoid[bone] = place, index, index
+        places[name], by_name[name] = place, index
+        if bone:
+            humanoid[bone] = index
         if parent:
             nodes[by_name[parent]].setdefault("children", []).append(index)
     builder.json["scenes"] = [{"nodes": [*range(len(scene.meshes)), by_name["Hips"]]}]
     _add_skin(builder, scene, places, by_name)
-    return humanoid
+    return humanoid, by_name
 
 
 def _add_skin(
     builder: GlbBuilder, scene: Scene, places: dict[str, NDArray[np.floating]], nodes: dict[str, int]
 ) -> None:
-    """Every mesh follows one bone: an eyeball that of its eye, all else that of the head."""
+    """An eyeball follows the bone of its eye, all else that of the head; what swings, its chains as well."""
     inverse = np.tile(np.eye(4, dtype="<f4"), (len(places), 1, 1))
     inverse[:, 3, :3] = -np.array(list(places.values())) * METRES  # a row is a column of the matrix in the file
     matrices = builder.accessor(inverse.reshape(-1, 16))
     skin = builder.add("skins", inverseBindMatrices=matrices, joints=[nodes[name] for name in places])
     hanging = {eye: name for name, eye in _EYES.values()}
+    order = {name: number for number, name in enumerate(places)}
     for node, mesh in enumerate(scene.meshes):
         attributes = builder.json["meshes"][node]["primitives"][0]["attributes"]
-        count = builder.json["accessors"][attributes["POSITION"]]["count"]
-        joints, weights = np.zeros((count, 4), "<u1"), np.zeros((count, 4), "<u1")
-        joints[:, 0], weights[:, 0] = list(places).index(hanging.get(mesh.name, "Head")), 255
+        joints, weights = followed_bones(mesh, order, hanging.get(mesh.name, "Head"))
         attributes["JOINTS_0"] = builder.accessor(joints, VERTICES)
         attributes["WEIGHTS_0"] = builder.accessor(weights, VERTICES, normalized=True)
         builder.json["nodes"][node]["skin"] = skin

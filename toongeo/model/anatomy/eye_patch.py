@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.geometry import LaplacianAligner, laplacian_align
 from toongeo.model import MorphableModel
 
@@ -29,6 +29,8 @@ class EyePatch:
     vertices: np.ndarray
     faces: np.ndarray
     border: np.ndarray
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "vertices", "faces", "border")

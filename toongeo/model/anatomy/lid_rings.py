@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.rims import opening_rim, rim_path
@@ -30,6 +30,8 @@ class LidRings:
 
     upper: np.ndarray
     lower: np.ndarray
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "upper", "lower")

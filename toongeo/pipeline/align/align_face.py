@@ -10,11 +10,14 @@ from typing import Literal
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
+from toongeo.pipeline.align.denoise_landmarks import LandmarkNoise, Noise, denoise_landmarks
+from toongeo.pipeline.align.keep_ears_rigid import keep_ears_rigid
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
 from toongeo.pipeline.align.rim_anchors import rim_anchors
@@ -37,13 +40,16 @@ class AlignReport:
     Attributes
     ----------
     rms_px, max_px : float
-        Distances of the anchors from their landmarks.
+        Distances of the anchors from their landmarks as they were given.
     seconds : float
+    noise : LandmarkNoise, optional
+        Of the landmarks; None where they were met as they are.
     """
 
     rms_px: float = 0.0
     max_px: float = 0.0
     seconds: float = 0.0
+    noise: LandmarkNoise | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +75,9 @@ class AlignedFace:
     model: MorphableModel
     fit: FaceFit
     report: AlignReport
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "vertices", "landmark_vertices")
@@ -101,6 +110,7 @@ def align_face(
     depth: Literal["keep", "scaled"] = "scaled",
     slide: bool = True,
     flow: bool = True,
+    noise: Noise = "auto",
     scheme: str = "ibug68",
 ) -> AlignedFace:
     """Deform a fitted face so that its landmark vertices project onto the landmarks (Pan et al. 2024, section 3.2.2).
@@ -109,7 +119,7 @@ def align_face(
     (:func:`~toongeo.pipeline.align.symmetric_flow.symmetric_flow`), which cannot fold it. Then the landmark vertices
     become the anchors of :func:`laplacian_align`, which closes the rest of the way. The rims of eyes and lips are
     anchored between the landmarks too, more softly, with interpolated displacements; upper and lower rims keep their
-    order. What lies behind an opening (sockets, mouth cavity) flows along; teeth and tongue do not bend.
+    order. What lies behind an opening (sockets, mouth cavity) flows along; teeth, tongue and ears do not bend.
 
     Parameters
     ----------
@@ -129,6 +139,10 @@ def align_face(
         ``landmark_vertices`` of the result tell where they ended.
     flow : bool
         False: _Laplacian deformation alone, as in the paper, which folds lids and lips of strong exaggerations.
+    noise : "auto" or float
+        Standard deviation of the landmarks' noise, in outer-eye distances. Noisy points are smoothed, and points that
+        the others contradict are put back, before the face is moved to them; ``"auto"`` does so only where it is plain
+        from the points, and 0 never (:func:`~toongeo.pipeline.align.denoise_landmarks.denoise_landmarks`).
     scheme : str
         What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
@@ -140,12 +154,14 @@ def align_face(
     ------
     ValueError
         If landmarks have another shape, hold infinities or are all missing, the weight is negative or not finite, or
-        the _Laplacian or the depth rule is unknown.
+        the _Laplacian, the depth rule or the noise is unknown.
     """
     started = time.perf_counter()
-    landmarks = ibug_landmarks(landmarks, scheme)
+    given = ibug_landmarks(landmarks, scheme)
     if depth not in ("keep", "scaled"):
         raise ValueError(f"depth: expected 'keep' or 'scaled', got {depth!r}")
+    cleaned = denoise_landmarks(fit, given, noise)
+    landmarks = cleaned.points
     V, at = fit.vertices, fit.landmark_vertices
     if flow:
         V, at = symmetric_flow(fit.model, fit.camera, V, at, landmarks, depth, slide)
@@ -154,8 +170,10 @@ def align_face(
     aligned = _anchored(fit, V, at, landmarks, weight, laplacian)
     inner = straighten_teeth if flow else carry_inner_parts
     aligned = keep_teeth_inside(fit.model, inner(fit.model, fit.vertices, aligned))
-    seen = np.isfinite(landmarks).all(1)
-    error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - landmarks[seen], axis=1)
+    if flow:
+        aligned = keep_ears_rigid(fit.model, fit.vertices, aligned)
+    seen = np.isfinite(given).all(1)
+    error = np.linalg.norm(fit.camera.project(aligned[at[seen]]) - given[seen], axis=1)
     return AlignedFace(
         vertices=aligned,
         camera=fit.camera,
@@ -166,6 +184,7 @@ def align_face(
             rms_px=float(np.sqrt((error**2).mean())),
             max_px=float(error.max()),
             seconds=time.perf_counter() - started,
+            noise=cleaned.change,
         ),
     )
 

@@ -10,7 +10,7 @@ from scipy.spatial.distance import cdist
 
 from toongeo.geometry.one_thread import one_thread
 
-__all__ = ["FieldPrior", "MIRROR", "field_covariance", "most_likely_field"]
+__all__ = ["FieldPrior", "MIRROR", "field_covariance", "most_likely_field", "observed_covariance"]
 
 MIRROR = np.array([-1.0, 1.0, 1.0])  # the sagittal plane of the model frame is x = 0
 
@@ -64,12 +64,18 @@ def most_likely_field(
     """
     k = len(points)
     with one_thread():
-        K = field_covariance(points, points, prior)
-        seen = np.einsum("iac,ijcd,jbd->iajb", jacobians, K, jacobians, optimize=True).reshape(2 * k, 2 * k)
+        seen = observed_covariance(points, jacobians, prior)
         forces = np.linalg.solve(seen + prior.noise * np.eye(2 * k), observed.ravel()).reshape(k, 2)
         pushes = np.einsum("iac,ia->ic", jacobians, forces)
         alike, unlike = _shares(prior)
         return _push(at, points, alike * pushes, prior) + _push(at, points * MIRROR, unlike * pushes * MIRROR, prior)
+
+
+def observed_covariance(points: np.ndarray, jacobians: np.ndarray, prior: FieldPrior) -> np.ndarray:
+    """Covariance (2 k, 2 k) of what is seen of the field at k places, without noise."""
+    size = 2 * len(points)
+    K = field_covariance(points, points, prior)
+    return np.einsum("iac,ijcd,jbd->iajb", jacobians, K, jacobians, optimize=True).reshape(size, size)
 
 
 def field_covariance(X: np.ndarray, Y: np.ndarray, prior: FieldPrior) -> np.ndarray:

@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.protocols import HeadCamera
 
@@ -120,6 +121,9 @@ class FaceFit:
     albedo: NDArray[np.float64] | None = None
     light: NDArray[np.float64] | None = None
     photometric: PhotometricReport | None = None
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "identity", "expression", "landmark_vertices", "albedo", "light")

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.landmark_basis import LandmarkBasis, landmark_basis
@@ -46,6 +47,9 @@ class RidgeRegressor:
     model: MorphableModel
     weights: Floats
     offset: Floats
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "weights", "offset")

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 
 __all__ = ["Hair"]
 
@@ -36,6 +37,9 @@ class Hair:
     uv: np.ndarray
     uv_faces: np.ndarray
     texture: np.ndarray
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         for name, rows, columns in (("vertices", self.vertices, 3), ("uv", self.uv, 2)):

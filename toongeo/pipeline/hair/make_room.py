@@ -10,7 +10,7 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.above_nape import above_nape
 from toongeo.pipeline.hair.plane.depth_maps import silhouette
 from toongeo.pipeline.hair.plane.hair_raster import hair_raster
-from toongeo.pipeline.hair.plane.masks import closed, signed
+from toongeo.pipeline.hair.plane.masks import closed, depth_inside, dilated, opened, signed
 from toongeo.pipeline.hair.plane.working_plane import WorkingPlane, working_plane
 from toongeo.pipeline.hair.room.drawn_inside import drawn_inside
 from toongeo.pipeline.hair.room.hidden_ears import hidden_ears, shrunken_ears
@@ -24,6 +24,10 @@ _SKIN = tuple(
     label for label in FaceLabel if label not in (FaceLabel.BACKGROUND, FaceLabel.HAIR, FaceLabel.OTHER, FaceLabel.HAT)
 )
 _COVERED_MM = 1.0  # so far inside the hair a vertex is covered
+_BESIDE_MM = (
+    10.0  # inside the head's outline, and no broader: hair there hangs beside a face that is narrower than the fit
+)
+_OVERLAP_MM = 3.5  # of that hair may lie over skin: as much as what is drawn inside an outline ends inside
 _SIDEWAYS = 0.6  # cosine to the viewer below which a covered side of the head gives way
 
 
@@ -59,7 +63,7 @@ def make_room(face: AlignedFace, rig: Rig, mask: Mask, parse: FaceParse | None =
     X = plane.of(face.vertices)
     ears = hidden_ears(face, plane, skin, hair)
     shift = shrunken_ears(face, X, ears)
-    outline = _outline(face, plane, X, hair | skin, shown | ~raster.pictured)
+    outline = _outline(face, plane, X, (hair, skin), shown | ~raster.pictured)
     shift += drawn_inside(face, plane, X + shift, outline, _moving(face, plane, hair, ears))
     shift = plane.back(shift)
     face = dataclasses.replace(face, vertices=face.vertices + shift)
@@ -75,14 +79,26 @@ def _shown(plane: WorkingPlane, hair: Mask, mask: Mask, parse: FaceParse | None)
     return skin_cells & ~hair, head_cells
 
 
-def _outline(face: AlignedFace, plane: WorkingPlane, X: np.ndarray, seen: Mask, shown: Mask) -> Mask:
+def _outline(face: AlignedFace, plane: WorkingPlane, X: np.ndarray, seen: tuple[Mask, Mask], shown: Mask) -> Mask:
     """Cells within which the head is to lie: hair and skin, and all that the head has below the chin."""
     F = face.faces
+    hair, skin = seen
     front = silhouette(plane, X, F[(face.region("face") & ~face.region("ears"))[F].all(1)])
-    outline = seen | (front & shown)
-    chin = int(np.clip(plane.cells(X[face.landmark_vertices[[8]], :2])[0, 1], 0, len(outline)))
+    chin, lids = (int(plane.cells(X[face.landmark_vertices[k], :2])[:, 1].max()) for k in ([8], [40, 41, 46, 47]))
+    outline = hair | skin | (front & shown)
+    outline[:lids] &= ~_beside(hair, skin, front)[:lids]
     outline[:chin] |= silhouette(plane, X, F)[:chin]
     return closed(outline, 4.0)
+
+
+def _beside(hair: Mask, skin: Mask, head: Mask) -> Mask:
+    """Cells of a strand along the head's outline and of the hair beside it, but for those next to skin that is seen.
+
+    On the steep sides of a face such a strand would reach from the ear far forward to its edge.
+    """
+    over = hair & head
+    strand = over & ~opened(over, _BESIDE_MM / 2) & (depth_inside(head) < _BESIDE_MM) & ~dilated(skin, _OVERLAP_MM)
+    return strand | (hair & ~head & dilated(strand, 2 * _BESIDE_MM))
 
 
 def _moving(face: AlignedFace, plane: WorkingPlane, hair: Mask, ears: tuple[str, ...]) -> Mask:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 
 __all__ = ["LandmarkTrack", "TrackedFace"]
 
@@ -29,6 +30,9 @@ class TrackedFace:
     confidence: NDArray[np.float64]
     score: float
     lost: bool
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "points", "confidence")
@@ -57,6 +61,9 @@ class LandmarkTrack:
     score: NDArray[np.float64]
     lost: NDArray[np.bool_]
     times: NDArray[np.float64]
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         count = len(self.times)

@@ -7,8 +7,10 @@ from typing import Literal
 import numpy as np
 
 from toongeo.geometry import DeformationTransfer
+from toongeo.geometry.rotations.similarity import similarity
 from toongeo.geometry.source_motion import SourceMotion, source_motion
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.motion_shares import motion_shares
 from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.feature_gains import feature_gains
@@ -25,7 +27,9 @@ def build_rig(face: AlignedFace, *, gain: float | Literal["auto"] = 1.0) -> Rig:
 
     The face is taken for neutral; :func:`neutral_face` makes it so. The gradients of each template expression are
     carried over by :class:`toongeo.DeformationTransfer`; vertices that no expression moves on the template (skull,
-    neck, ears) are pinned, and the template is turned onto the face first.
+    neck, ears) are pinned, and the template is turned onto the face first. Where the template is still in an
+    expression, so is the face: displacements fade out with the template's own
+    (:func:`~toongeo.model.anatomy.motion_shares.motion_shares`).
 
     Parameters
     ----------
@@ -76,10 +80,23 @@ def _transferred(face: AlignedFace, gain: float | Literal["auto"]) -> np.ndarray
     motions = _motions(model)
     for start in range(0, len(deltas), AT_ONCE):
         deltas[start : start + AT_ONCE] = transfer.displacements(motions[start : start + AT_ONCE])
+    _end_with(model, face.vertices, deltas)
     gains = feature_gains(model, face.vertices, deltas) if gain == "auto" else np.full(len(deltas), float(gain))
     if (gains != 1).any():
         deltas *= gains.astype(np.float32)[:, None, None]
     return deltas
+
+
+def _end_with(model: MorphableModel, V: np.ndarray, deltas: np.ndarray) -> None:
+    """Let displacements end where the template's do, in place: what they are beyond those, in its size, fades out.
+
+    Gradients add up: where a face is drawn unlike the template, what they carry does not end by itself.
+    """
+    scale, rotation, _ = similarity(model.mean, V)
+    turn = (scale * rotation.T).astype(np.float32)
+    for delta, shape, share in zip(deltas, model.expression, motion_shares(model), strict=False):
+        own = shape @ turn
+        delta[:] = own + share[:, None] * (delta - own)
 
 
 @lru_cache(maxsize=4)

@@ -11,7 +11,7 @@ __all__ = ["fit_pose"]
 _RIDGE = 1e-6  # of the mean square of the blendshapes: decides between expressions that do the same
 
 
-def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
+def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray, *, ridge: float = _RIDGE) -> np.ndarray:
     """Weights (k,) in [0, 1] of the expressions whose face comes nearest to given vertices (bounded least squares).
 
     Parameters
@@ -20,6 +20,9 @@ def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
     vertices : (n, 3) float, mm
     where : (n,) bool
         Vertices that count.
+    ridge : float
+        Cost of the weights, in terms of the summed squares of the blendshapes: with more, expressions that undo each
+        other are not both used.
 
     Returns
     -------
@@ -40,6 +43,6 @@ def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray) -> np.ndarray:
     with one_thread():
         gram, right = (B @ B.T).astype(np.float64), (B @ motion.astype(np.float32)).astype(np.float64)
         # The normal equations hold all of the problem: with a root of the Gram matrix it is one of 46 rows.
-        root = np.linalg.cholesky(gram + _RIDGE * np.trace(gram) * np.eye(len(gram)))
+        root = np.linalg.cholesky(gram + ridge * np.trace(gram) * np.eye(len(gram)))
         solution = lsq_linear(root.T, np.linalg.solve(root, right), bounds=(0.0, 1.0), method="bvls")
     return np.asarray(solution.x)

@@ -1,6 +1,6 @@
 """A face without the expression of its picture.
 
-Constants were judged on the seven examples (``benchmarks/rig.py``).
+Constants were judged on the seven examples (``benchmarks/rig.py``); of closing: ``benchmarks/mouths.py``.
 """
 
 import dataclasses
@@ -10,31 +10,37 @@ import numpy as np
 from toongeo.geometry import DeformationTransfer, laplacian_align
 from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.lips_apart import lips_apart
 from toongeo.model.anatomy.rims import rim_path
 from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.model.expression_features import REMOVED, SIGNS
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
+from toongeo.pipeline.rig.mouth.closed_mouth import NEEDS, closed_mouth
+from toongeo.pipeline.rig.mouth.open_as_drawn import OPENING
 
 __all__ = ["neutral_face"]
 
+# Of the mouth's width, mean: where a mouth begins to be closed, and is closed wholly. The template's is 0.02.
+_APART = (0.03, 0.05)
 _SURE = (0.3, 0.6)  # weights of a sign from which an expression begins to be removed, and is removed wholly
 _PARTED = (0.1, 0.2)  # the same for the gap between the lips, in widths of the mouth
 _WEIGHT = 1e3  # of the anchors on the lips: they are met to about a hundredth of a millimetre
 
 
 def neutral_face(face: AlignedFace) -> AlignedFace:
-    """The aligned face with its mouth at rest: the smile or the open jaw of the picture taken out.
+    """The aligned face with its mouth at rest: closed, where the picture has it open.
 
-    An aligned face has left the model's space, so its expression cannot be subtracted. It is removed by inverse
-    deformation transfer: the gradients from the fitted model face with the expression to the same without it are
-    carried over to the aligned face. The lips then get the gap that the model's have.
+    The drawn lips are brought together as two curves, and the face below them follows
+    (:func:`~toongeo.pipeline.rig.mouth.closed_mouth.closed_mouth`). No expression is taken out: what a fit calls a
+    smile is often the face, and drawn lips that shrink with it pile up. Where lips would cross or be strained too much
+    they close as far as they go. Shut eyes stay shut: what is behind them was never seen.
 
-    A fit explains a drawing by both identity and expression, and what it calls an expression is often the face: large
-    eyes are "wide", full cheeks "puffed". Only the mouth is therefore brought to rest, and only where it clearly is
-    not: it smiles, is open, bares its teeth or purses its lips (the signs in ``expression_features.csv``, by their
-    weights), or there is a gap between the lips. All that the fit found about the mouth then goes at once; a part of a
-    smile would be a grimace. Shut eyes stay shut: what is behind them was never seen.
+    A model that does not tell where the lips end (without ``mouth_cavity``) has the expression of the mouth taken out
+    instead, where it clearly has one (it smiles, is open, bares its teeth or purses its lips: the signs in
+    ``expression_features.csv``, by their weights). The gradients from the fitted model face with the expression to the
+    same without it are carried over to the aligned face, and the lips get the gap that the model's have. All that the
+    fit found about the mouth goes at once; a part of a smile would be a grimace.
 
     Parameters
     ----------
@@ -43,8 +49,24 @@ def neutral_face(face: AlignedFace) -> AlignedFace:
     Returns
     -------
     AlignedFace
-        Its ``fit`` has the rest of the expression. The same object, if there is nothing to remove.
+        Its ``fit`` has the rest of the expression. The same object, if there is nothing to close or remove.
     """
+    return _closed(face) if face.model.has(*NEEDS) else _without_expression(face)
+
+
+def _closed(face: AlignedFace) -> AlignedFace:
+    model, V = face.model, face.vertices
+    share = _ramp(lips_apart(model, V), _APART)
+    if share == 0:
+        return face
+    expression = face.fit.expression.copy()
+    expression[[name in OPENING for name in model.expression_names]] *= 1 - share
+    fit = dataclasses.replace(face.fit, expression=expression)
+    closed = V + share * (closed_mouth(model, V) - V)
+    return dataclasses.replace(face, vertices=keep_teeth_inside(model, closed), fit=fit)
+
+
+def _without_expression(face: AlignedFace) -> AlignedFace:
     model, expression = face.model, face.fit.expression.copy()
     share = max(_by_signs(model, expression), _by_gap(model, face.vertices))
     mouth = [k for k, name in enumerate(model.expression_names[: model.n_named]) if name in REMOVED]

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.expression_schemes import SCHEMES
 from toongeo.model.expression_weights import expression_weights
@@ -67,6 +68,9 @@ class Rig:
     gaze: np.ndarray
     pose: np.ndarray
     report: RigReport
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "neutral", "deltas", "gaze", "pose")

@@ -10,10 +10,15 @@ import numpy as np
 
 from toongeo.io import check_image
 from toongeo.model import MorphableModel, atlas_coordinates
+from toongeo.model.anatomy.lid_rings import lids_of
+from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.diffuse_texture import diffuse_texture
 from toongeo.pipeline.texture.face_picture import FacePicture, face_picture
+from toongeo.pipeline.texture.lids.paint_lids import paint_lids
+from toongeo.pipeline.texture.mouth.paint_mouth import paint_mouth
 from toongeo.pipeline.texture.remove_shading import remove_shading
 from toongeo.pipeline.texture.sample_area import sample_area
 from toongeo.pipeline.texture.unseen_colours import unseen_colours
@@ -47,15 +52,16 @@ def bake_texture(
     remainder comes from the mirrored side where that is seen, raised or lowered to meet the seen side without a seam,
     and what neither side shows from the seen skin, diffused breadth first over the surface. The scalp takes the colour
     of the hair if the parse has any. Mouth and sockets keep the model's albedo, matched to the picture's skin, and so
-    does the whole head where no skin is seen.
+    does the whole head where no skin is seen; but teeth and tongue that a parse shows between the lips are painted.
 
     Parameters
     ----------
     img : (H, W, 3) uint8 RGB
     face : AlignedFace
     rig : Rig, optional
-        Skin that its expressions stretch manyfold, such as the narrow strip of a lid that is open in the picture, takes
-        the diffused colour too: a drawn lash there would be smeared over the closed eye.
+        Skin that its expressions stretch manyfold takes the diffused colour too. The strip of a lid that a blink draws
+        over the whole eye becomes plain skin, as it is around the eye, and its lashes a line along its edge: as drawn,
+        they would be smeared over the closed eye.
     size : int
         Side of the atlas in texels.
     parse : FaceParse, optional
@@ -102,7 +108,11 @@ def bake_texture(
         colours[rows] = share * colour + (1 - share) * colours[rows]
     image = np.zeros((size * size, 3), np.uint8)
     image[texels] = np.clip(np.rint(colours), 0, 255)
-    return diffuse_texture(image.reshape(size, size, 3), atlas.mask)
+    texture = image.reshape(size, size, 3)
+    if parse is not None:
+        texture = paint_mouth(texture, atlas, img, face, drawn_mouth(img, parse))
+    texture = diffuse_texture(texture, atlas.mask)
+    return texture if rig is None else paint_lids(texture, atlas, img, face, rig)
 
 
 def check_size(size: int) -> None:
@@ -164,8 +174,12 @@ def _footprints(face: AlignedFace, picture: FacePicture, size: int) -> np.ndarra
 
 
 def _calm(face: AlignedFace, rig: Rig) -> np.ndarray:
-    """1 (n,) where no expression stretches the skin much, 0 where one enlarges a triangle manyfold."""
-    triangles = face.faces[face.region("face")[face.faces].all(1)]
+    """1 (n,) where no expression stretches the skin much, 0 where one enlarges a triangle manyfold, lids left aside."""
+    around = face.region("face").copy()
+    for side in SIDES:
+        if face.model.has(*lids_of(side)):
+            around &= ~face.region(f"eye_{side}")
+    triangles = face.faces[around[face.faces].all(1)]
 
     def areas(V: np.ndarray) -> np.ndarray:
         a, b, c = (V[:, triangles[:, k]] for k in range(3))
@@ -175,7 +189,8 @@ def _calm(face: AlignedFace, rig: Rig) -> np.ndarray:
 
     # Coordinates in rows and single precision: this looks at every triangle of every expression.
     rest = np.ascontiguousarray(rig.neutral.T, np.float32)
-    neutral = np.maximum(areas(rest), 1e-9)
+    # A mouth at rest is narrower than it is drawn; what counts is how its drawing is stretched.
+    neutral = np.maximum(np.maximum(areas(rest), areas(np.ascontiguousarray(face.vertices.T, np.float32))), 1e-9)
     growth = np.max([areas(rest + delta.T) for delta in rig.deltas], axis=0, initial=0.0) / neutral
     stretch = np.ones(len(rig.neutral))
     np.maximum.at(stretch, triangles.ravel(), growth.repeat(3))

@@ -24,6 +24,7 @@ _FRONTAL = 0.45  # cosine to the viewer from which a vertex is seen well
 _SMOOTHING = 24  # passes that take the streaks out of the breadth-first diffusion
 _SOFT = 12  # passes that soften the hairline
 _BLUR_SIDE = 256  # px; the picture is blurred at this size
+_LIP_VERTICES = 8  # seen of the lips; with fewer they take the colour of the skin
 _HAIR_VERTICES = 8  # seen on hair; with fewer the head is taken for bald
 
 
@@ -58,7 +59,7 @@ def unseen_colours(face: AlignedFace, picture: FacePicture) -> tuple[np.ndarray,
     lent = seen[model.mirror] & ~seen & model.region("face")
     known = np.where(seen[:, None], own, own[model.mirror] + offset)
     filled = _spread(joined, np.clip(known, 0, 255), seen | lent, skin)
-    filled = _with_hair(face, picture, joined, filled, seen)
+    filled = _with_hair(face, picture, joined, _with_lips(face, picture, joined, filled), seen)
     model_skin = 255.0 * model.albedo_mean[model.region("face")].mean(0)
     colours = np.where(outside[:, None], filled, _matched(colours, model_skin, skin))
     return _inner_rims(model.faces, colours, outside), offset
@@ -108,6 +109,17 @@ def _smooth(edges: sp.csr_array, values: np.ndarray, free: np.ndarray, passes: i
     for _ in range(passes):
         values[rows] = mean @ values
     return values
+
+
+def _with_lips(face: AlignedFace, picture: FacePicture, joined: sp.csr_array, colours: np.ndarray) -> np.ndarray:
+    """Colours whose lips are red up to their inner edges: skin would be a pale rim around an opened mouth."""
+    lips = face.region("lips")
+    seen = _seen(face, picture, picture.skin) & lips
+    if seen.sum() < _LIP_VERTICES:
+        return colours
+    own, among = _blurred_at(picture, picture.skin), sp.diags_array(lips.astype(float))
+    red = _spread(sp.csr_array(among @ joined @ among), own, seen, np.median(own[seen], axis=0))
+    return np.where(lips[:, None], red, colours)
 
 
 def _with_hair(

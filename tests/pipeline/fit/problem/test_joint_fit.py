@@ -71,6 +71,8 @@ def test_a_list_of_one_is_the_fit_of_one(person):
     (listed,) = fit_3dmm_together([None], [points])
     alone = fit_3dmm(None, points)
     np.testing.assert_allclose(listed.vertices, alone.vertices, atol=1e-9)
+    assert 1 <= alone.report.passes <= 10
+    assert (listed.report.passes, listed.report.evaluations) == (alone.report.passes, alone.report.evaluations)
 
 
 def test_three_pictures_know_a_person_better_than_one(model, person):

@@ -59,6 +59,15 @@ def test_settled_pixels_give_the_same_cut_as_all(rng):
     np.testing.assert_array_equal(min_cut(odds, lab, 1.0, 3.0), min_cut(odds, lab, 1.0, 1e6))
 
 
+def test_the_settled_side_pulls_at_the_doubtful_one():
+    """A line of doubt in a settled field takes the field's side: its borders to what is left out count."""
+    odds = np.full((15, 24), 5.0, np.float32)
+    odds[:, 11] = -0.2
+    lab = np.zeros((15, 24, 3), np.float32)
+    assert min_cut(odds, lab, 1.0, 0.1).all() and not min_cut(-odds, lab, 1.0, 0.1).any()
+    assert min_cut(odds, lab, 1.0, 1e6).all()
+
+
 def test_a_picture_of_one_side_stays_so():
     lab = np.zeros((8, 9, 3), np.float32)
     assert not min_cut(np.full((8, 9), -5.0, np.float32), lab, 6.0, 3.0).any()

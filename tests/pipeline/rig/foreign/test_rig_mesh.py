@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from toongeo.model.anatomy.rims import rim_path
-from toongeo.model.ibug68 import INNER
+from toongeo.model.ibug68 import INNER, MIRROR
 from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
 from toongeo.pipeline.rig.foreign.check_winding import check_winding
-from toongeo.pipeline.rig.foreign.close_gaps import _heights, close_gaps
-from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
+from toongeo.pipeline.rig.foreign.close_gaps import _heights
 from toongeo.pipeline.rig.foreign.rig_mesh import rig_mesh
 
 SHIFT = np.array([3.0, -2.0, 9.0])
@@ -104,52 +103,6 @@ def test_a_blink_closes_the_eyes_of_another_head(ict, ict_rig, side):
     assert closed_eye.max() < 0.05 * open_eye.max()
 
 
-def test_a_taller_eye_is_closed(model):
-    blink = model.expression[model.expression_index("eyeBlinkLeft")]
-    upper, lower = rim_path(model, "lid_upper_left"), rim_path(model, "lid_lower_left")
-    tall = model.mean.copy()
-    near = np.exp(-(np.linalg.norm(tall - model.mean[upper].mean(0), axis=1) ** 2) / 200)
-    tall[:, 1] += 4.0 * near * (tall[:, 1] > model.mean[lower, 1].mean())
-    before = tall + blink
-    after = close_gaps(model, tall, before, "left")
-    assert _heights(tall, before, upper, lower)[0].max() > 1.0
-    assert _heights(tall, after, upper, lower)[0].max() < 0.05
-    still = ~(model.region("eye_left") | model.region("socket_left"))
-    np.testing.assert_array_equal(after[still], before[still])
-    np.testing.assert_array_equal(close_gaps(model, model.mean, model.mean + blink, "left"), model.mean + blink)
-
-
-def test_a_tooth_moves_with_its_row_and_does_not_bend(rng):
-    skin, tooth, row = rng.normal(size=(20, 3)), rng.normal(size=(8, 3)) + 5, rng.normal(size=(30, 3)) + 5
-    V = np.vstack([skin, tooth])
-    F = np.vstack([[(k, k + 1, k + 2) for k in range(18)], [(20 + k, 21 + k, 22 + k) for k in range(6)]])
-    shapes = rng.normal(0, 0.1, size=(3, 28, 3))
-    of_row = np.arange(60) < 30
-    drop = np.array([[0, -2.0, 0], [1, 0, 0], [0, 0, 0]])[:, None] * of_row[:, None]
-    within = MouthParts(np.vstack([row, row + 100]), drop, of_row, (of_row, ~of_row))
-    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(28) < 20, within)
-    np.testing.assert_array_equal(found[:, :20], shapes[:, :20])
-    np.testing.assert_allclose(found[:, 20:], np.broadcast_to(drop[:, :1], (3, 8, 3)), atol=1e-12)
-    bent = dataclasses.replace(within, shapes=drop + rng.normal(0, 0.1, size=(3, 60, 3)))
-    for shape in settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(28) < 20, bent):
-        pairs = [np.linalg.norm(x[:, None] - x, axis=2) for x in (tooth, tooth + shape[20:])]
-        np.testing.assert_allclose(pairs[0], pairs[1], atol=1e-12)
-
-
-def test_a_lash_moves_as_the_lid_it_grows_on():
-    """A strip that stands on the edge of a plate and leans over it: all of it moves as the edge."""
-    x, y = np.meshgrid(np.linspace(0, 4, 5), np.linspace(0, 8, 9), indexing="ij")
-    plate = np.column_stack([x.ravel(), y.ravel(), 0 * x.ravel()])
-    strip = np.array([[z, k, z] for k in range(1, 8) for z in (0.1, 1.0, 2.0, 3.0)])
-    V = np.vstack([plate, strip])
-    F = np.vstack([[(k, k + 1, k + 9) for k in range(36)], [(45 + k, 46 + k, 47 + k) for k in range(26)]])
-    shapes = np.zeros((1, len(V), 3))
-    shapes[0, :9, 1] = -1.0  # the edge x = 0
-    within = MouthParts(plate, shapes[:, :45], np.zeros(45, bool), ())
-    found = settle_loose_parts(V, F, np.full((68, 3), np.nan), shapes, np.arange(len(V)) < 45, within)
-    np.testing.assert_array_equal(found[0, 45:], np.broadcast_to([0, -1.0, 0], (28, 3)))
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -197,3 +150,21 @@ def test_a_model_without_eyes_will_do(model):
     rig = rig_mesh(model.mean, front, model.landmarks, model=small)
     unused = np.setdiff1d(np.arange(len(model.mean)), front)
     assert not rig.deltas[:, unused].any() and rig.report.partnered > 0.9
+
+
+def test_a_head_far_from_the_origin_keeps_its_rig(model):
+    near = rig_mesh(model.mean, model.faces, model.landmarks)
+    place = np.array([3e8, 5e9, 1e5])  # mm: a scan in the coordinates of a map
+    far = rig_mesh(model.mean + place, model.faces, model.landmarks)
+    apart = np.linalg.norm(far.deltas - near.deltas, axis=2)  # of what the digits that are left make of lips and lids
+    assert apart.mean() < 0.01 and np.quantile(apart, 0.99) < 0.2 and apart.max() < 3
+    np.testing.assert_array_equal(far.neutral, model.mean + place)
+
+
+@pytest.mark.parametrize("mirrored", ["landmarks", "mesh"])
+def test_exchanged_sides_are_refused(model, mirrored):
+    V = model.mean * ([-1, 1, 1] if mirrored == "mesh" else 1)
+    F = model.faces[:, ::-1] if mirrored == "mesh" else model.faces
+    points = V[model.landmarks[MIRROR] if mirrored == "landmarks" else model.landmarks]
+    with pytest.raises(ValueError, match="landmarks: left and right are exchanged, or the mesh is mirrored"):
+        rig_mesh(V, F, points)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.io.point_array import point_array
 from toongeo.model.morphable_model import MorphableModel
@@ -32,6 +32,8 @@ class LandmarkTable:
 
     corners: NDArray[np.int64]
     weights: Floats
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "corners", "weights")

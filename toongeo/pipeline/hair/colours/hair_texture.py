@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.arrays import Integers, Reals
+from toongeo.geometry import vertex_normals
 from toongeo.pipeline.hair.colours.panels import Texels, panels, texels
 from toongeo.pipeline.hair.colours.picture_colours import PictureColours
 from toongeo.pipeline.hair.colours.strand_frame import StrandFrame
@@ -28,12 +29,13 @@ def hair_texture(
     ``strands`` (along, across, 3) is what strands add to the colours, on the whole breadth of the frame's map.
     """
     density = 1.0 / colours.cell_mm
-    found = panels(mesh, density, _UNSEEN)
+    normals = vertex_normals(mesh.vertices, mesh.faces)
+    found = panels(mesh, normals, density, _UNSEEN)
     pictures, corners = [], np.zeros_like(mesh.faces)
     places = []
     count = left = 0
     for panel in found:
-        inside = texels(panel, mesh)
+        inside = texels(panel, mesh, normals)
         painted = np.zeros((panel.shape[0] * panel.shape[1], 3), np.float32)
         painted[inside.number] = _colours(plane, mesh, inside, colours, frame, strands)
         covered = np.zeros(len(painted), bool)
@@ -60,7 +62,7 @@ def _colours(
 ) -> NDArray[np.float32]:
     """Colours (k, 3) of texels."""
     at = (inside.points[:, :2] - plane.low) / colours.cell_mm
-    drawn, broad, plain = (sample_image(layer, at) for layer in (colours.drawn, colours.broad, colours.plain))
+    broad, plain = (sample_image(layer, at) for layer in (colours.broad, colours.plain))
     across, along = frame.at(plane.back(inside.points))
     per_mm = strands.shape[1] / frame.breadth
     rows = np.abs(np.mod(along * per_mm + len(strands), 2 * len(strands)) - len(strands))  # there and back again
@@ -68,7 +70,10 @@ def _colours(
     seen = (mesh.front & mesh.shown)[inside.triangle]
     behind = _ramp(-inside.normals[:, 2], *_BEHIND)
     share = _ramp(inside.normals[:, 2], *_TURNED) * seen[:, None]
-    return np.asarray(share * drawn + (1 - share) * (broad + behind * (plain - broad) + detail), np.float32)
+    painted = broad + behind * (plain - broad) + detail
+    pictured = np.flatnonzero(share > 0)
+    painted[pictured] += share[pictured] * (sample_image(colours.drawn, at[pictured]) - painted[pictured])
+    return np.asarray(painted, np.float32)
 
 
 def _ramp(values: Reals, low: float, high: float) -> NDArray[np.float32]:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo.arrays import Integers, Reals
-from toongeo.geometry import vertex_normals
 from toongeo.pipeline.hair.shell.shell_mesh import ShellMesh
 from toongeo.render import interpolate, rasterize
 
@@ -65,11 +64,10 @@ class Texels:
     normals: Reals
 
 
-def panels(mesh: ShellMesh, front_density: float, density: float) -> list[Panel]:
-    """The panels that have triangles; the front one has a density of its own, texels per mm."""
+def panels(mesh: ShellMesh, normals: Reals, front_density: float, density: float) -> list[Panel]:
+    """The panels that have triangles; the front one has a density (texels per mm) of its own, normals are a vertex."""
     V, F = mesh.vertices, mesh.faces
-    N = vertex_normals(V, F)[F].mean(1)
-    facing = N @ _VIEWS[:, 2].T
+    facing = normals[F].mean(1) @ _VIEWS[:, 2].T
     seen = mesh.front & mesh.shown
     # The picture is stretched where the hair turns away, and shows nothing of what lies behind.
     facing[:, 0] = np.where(seen & (facing[:, 0] > _FRONT), 2.0, np.where(mesh.front, facing[:, 0] - 1.0, -2.0))
@@ -87,13 +85,12 @@ def panels(mesh: ShellMesh, front_density: float, density: float) -> list[Panel]
     return found
 
 
-def texels(panel: Panel, mesh: ShellMesh) -> Texels:
+def texels(panel: Panel, mesh: ShellMesh, normals: Reals) -> Texels:
     """What lies in each texel that a panel's triangles cover; the outermost where several do."""
     F = mesh.faces[panel.rows]
     depth = mesh.vertices @ panel.view[2]
     fragments = rasterize(np.column_stack([panel.places(mesh.vertices), depth]), F, *panel.shape)
     number = np.flatnonzero(fragments.mask)
-    values = np.column_stack([mesh.vertices, vertex_normals(mesh.vertices, mesh.faces)])
-    at = interpolate(fragments, F, values).reshape(-1, 6)[number]
-    normals = at[:, 3:] / np.maximum(np.linalg.norm(at[:, 3:], axis=1, keepdims=True), 1e-9)
-    return Texels(number, panel.rows[fragments.face_ids.ravel()[number]], at[:, :3], normals)
+    at = interpolate(fragments, F, np.column_stack([mesh.vertices, normals])).reshape(-1, 6)[number]
+    turned = at[:, 3:] / np.maximum(np.linalg.norm(at[:, 3:], axis=1, keepdims=True), 1e-9)
+    return Texels(number, panel.rows[fragments.face_ids.ravel()[number]], at[:, :3], turned)

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import map_coordinates
+from scipy.ndimage import gaussian_filter1d, map_coordinates
 
 from toongeo.arrays import Reals
 from toongeo.pipeline.hair.colours.picture_colours import PictureColours
@@ -16,6 +16,7 @@ _SIDE_MM = (10.0, 36.0)  # of a patch: a lock of hair, as far as the hair is bro
 _FLOW_MM = 8.0  # over which the direction of strands is smoothed
 _OUTSTANDING = 2.0  # times the usual contrast
 _STEADY = 0.15  # coherence below which a patch is taken as it stands
+_LENGTH_MM = 2.5  # along strands patches are smoothed: curls and grain of a photograph are specks where they repeat
 
 
 def strand_patches(colours: PictureColours, per_mm: float, rng: np.random.Generator) -> NDArray[np.float32]:
@@ -36,6 +37,10 @@ def strand_patches(colours: PictureColours, per_mm: float, rng: np.random.Genera
     places = np.moveaxis(at, 3, 0).reshape(2, -1)
     channels = [map_coordinates(detail[..., k], places, order=1, mode="nearest") for k in range(3)]
     patches = np.stack(channels, 1).reshape(len(centres), pixels, pixels, 3).astype(np.float32)
+    # Smoothed along the strands, and as strong as before.
+    before = patches.std((1, 2), keepdims=True)
+    patches = gaussian_filter1d(patches, _LENGTH_MM * per_mm, axis=1, mode="nearest")
+    patches *= before / np.maximum(patches.std((1, 2), keepdims=True), 1e-3 + 0.5 * before)
     # A stroke that few patches have is drawn where it belongs, not a pattern of the hair.
     contrast = patches.std((1, 2, 3))
     return patches[contrast <= _OUTSTANDING * np.median(contrast)]

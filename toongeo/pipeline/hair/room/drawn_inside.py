@@ -14,7 +14,7 @@ from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 __all__ = ["drawn_inside"]
 
 
-_INSIDE_MM = 3.5  # between the outline and what is drawn inside: the thinnest hair
+_INSIDE_MM = 5.0  # between the outline and what is drawn inside: the thinnest hair
 _ROUNDS, _PASSES = 4, 6  # pushes, and passes that spread each over the neighbours
 
 

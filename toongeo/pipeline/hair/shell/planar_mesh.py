@@ -1,10 +1,12 @@
 """Triangles of a region of the plane, true to outlines of it and of its parts."""
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 from scipy.spatial import Delaunay, cKDTree
 from skimage.measure import find_contours, points_in_poly
 
@@ -19,7 +21,8 @@ STEP_MM, GRID_MM = 2.8, 7.5  # spacing along outlines, and between the points in
 RINGS_MM = (1.5, 4.5)  # inside outlines: rows of points, without which a shell that turns there is a washboard
 FOLD_MM = (-1.3, -4.5)  # outside a part: rows where the shell folds away from it
 _CLOSE_MM = 1.6  # nearer to another outline an outline adds nothing
-_SOFT, _EPSILON = 0.8, 0.35  # cells: what smooths an outline, and what it may be off by
+_SOFT, _EPSILON = 0.8, 0.35  # cells: what smooths an outline, and what may lie beside a chord before it gets a corner
+_CALM_MM, _NOTCH_MM = 6.0, 1.2  # smooths the outer outline; notches beyond this stay, smaller ones furrow the sides
 _SHORTEST_MM = 0.3  # pieces of outlines below this are not split any more
 _PASSES = 8
 _SMALLEST_MM2 = 30.0  # outlines that bound less are left out
@@ -52,13 +55,12 @@ def planar_mesh(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask]) -> tupl
     T : (m, 3) int64
         Counter-clockwise.
     """
-    rings = [_subdivided(line) for line in _outlines(plane, whole)]
+    rings = _outlines(plane, whole, _without_notches)
     outer = rings.copy()
     tree = cKDTree(np.vstack(rings))
     lines = [np.vstack([ring, ring[:1]]) for ring in rings]
     for part in parts:
-        for line in _outlines(plane, part):
-            ring = _subdivided(line)
+        for ring in _outlines(plane, part):
             lines += _runs(ring, tree.query(ring)[0] > _CLOSE_MM)
             tree = cKDTree(np.vstack([tree.data, ring]))
     outline = _joined(lines)
@@ -69,27 +71,40 @@ def planar_mesh(plane: WorkingPlane, whole: Mask, parts: Sequence[Mask]) -> tupl
     return P[used], T.reshape(-1, 3)
 
 
-def _outlines(plane: WorkingPlane, mask: Mask) -> list[Reals]:
-    """Closed lines (k, 2), mm, about the pieces of a mask and their holes."""
+def _outlines(plane: WorkingPlane, mask: Mask, smoothed: Callable[[Reals], Reals] | None = None) -> list[Reals]:
+    """Closed lines (k, 2), mm, about the pieces of a mask and their holes, in pieces no longer than the step."""
     soft = cv2.GaussianBlur(np.pad(mask.astype(np.float32), 2), (0, 0), _SOFT)
     lines = []
     for contour in find_contours(soft, 0.5):
         line = contour[:-1, ::-1] - 2
-        if len(line) < 8:
-            continue
-        simple = cv2.approxPolyDP(line[:, None].astype(np.float32), _EPSILON, True)[:, 0].astype(np.float64)
-        if len(simple) >= 3 and cv2.contourArea(simple.astype(np.float32)) * CELL_MM**2 > _SMALLEST_MM2:
-            lines.append(plane.points(simple))
+        if len(line) >= 8 and cv2.contourArea(line.astype(np.float32)) * CELL_MM**2 > _SMALLEST_MM2:
+            lines.append(plane.points(_thinned(line if smoothed is None else smoothed(line))))
     return lines
 
 
-def _subdivided(line: Reals) -> Reals:
-    """A closed line whose pieces are no longer than the step."""
-    pieces = []
-    for a, b in zip(line, np.roll(line, -1, 0), strict=True):
-        k = max(1, int(np.ceil(np.linalg.norm(b - a) / STEP_MM)))
-        pieces.append(a + (b - a) * (np.arange(k) / k)[:, None])
-    return np.vstack(pieces)
+def _without_notches(line: Reals) -> Reals:
+    """A closed line, cells, without what is no more than noise of its pixels."""
+    sigma = _CALM_MM / CELL_MM
+    calm = gaussian_filter1d(line, sigma, axis=0, mode="wrap")
+    calm = calm + gaussian_filter1d(line - calm, sigma, axis=0, mode="wrap")  # does not shrink what is round
+    off = np.linalg.norm(calm - line, axis=1, keepdims=True) * CELL_MM / _NOTCH_MM
+    return np.asarray(line + (calm - line) * np.clip(2 - off, 0, 1))
+
+
+def _thinned(line: Reals) -> Reals:
+    """Points of a closed line: its corners, and others between them at most a step apart."""
+    corners = cv2.approxPolyDP(line[:, None].astype(np.float32), _EPSILON, True)[:, 0]
+    at = np.sort(cKDTree(line).query(corners)[1])
+    ends = np.r_[at, at[0] + len(line)]
+    length = np.r_[0, np.cumsum(np.linalg.norm(np.roll(line, -1, 0) - line, axis=1))]
+    length = np.r_[length, length[-1] + length[1:]]
+    places = [
+        np.linspace(a, b, max(1, int(np.ceil((b - a) * CELL_MM / STEP_MM))), endpoint=False)
+        for a, b in itertools.pairwise(length[ends].tolist())
+    ]
+    twice = np.vstack([line, line, line[:1]])
+    at_places = np.concatenate(places)
+    return np.column_stack([np.interp(at_places, length, twice[:, k]) for k in range(2)])
 
 
 def _runs(ring: Reals, kept: Mask) -> list[Reals]:

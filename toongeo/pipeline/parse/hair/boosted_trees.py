@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Singles
 
 __all__ = ["BoostedTrees"]
@@ -33,6 +33,8 @@ class BoostedTrees:
     thresholds: Singles
     leaves: Singles
     start: Singles
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         inner, ends = self.features.shape[2], self.leaves.shape[2]

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.model import EyeballTemplate, MorphableModel
 from toongeo.model.anatomy.gaze import GAZE_NAMES, TURN, gaze_rotation
 from toongeo.model.anatomy.lid_rings import lid_rings, lids_of, opening_height
@@ -56,6 +57,9 @@ class Eyes:
     turn: np.ndarray
     pose: np.ndarray
     seconds: float
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "centres", "radii", "turn", "pose")

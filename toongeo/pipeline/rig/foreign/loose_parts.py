@@ -6,8 +6,12 @@ Constants were judged on ICT-FaceKit's head and the template (``benchmarks/regis
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
+from toongeo.geometry import vertex_normals
+from toongeo.geometry.facing_surface import FACING, FacingSurface
+from toongeo.geometry.operators.adjacency import adjacency
 from toongeo.geometry.operators.vertex_components import vertex_components
 from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model.ibug68 import PARTS
@@ -18,6 +22,7 @@ _ROUND = 0.1  # of the radius: how far a ball's vertices may be off the sphere, 
 _BALL = 0.25, 0.75  # least and greatest radius of an eyeball, in widths of the eye
 _ONE_PART = 0.7  # share of a part's vertices by which it belongs to one row of teeth, or to the tongue
 _ROOTS = 0.25  # share of a part's vertices
+_CLOSE = 0.015  # of the head's size, some 4 mm: how thick the wall of a mesh may be
 _NEAR = 1.0  # widths of the eye from the middle of its landmarks to the middle of the ball
 
 
@@ -67,18 +72,60 @@ def settle_loose_parts(
     part = vertex_components(F, len(V))
     sizes = np.bincount(part)
     whole = cKDTree(within.vertices)
-    body = np.flatnonzero(part == sizes.argmax())
-    for number in np.flatnonzero((sizes < sizes.max()) & (sizes > 1)):
+    largest = np.bincount(part, partnered).argmax()
+    body = np.flatnonzero(part == largest)
+    outer = _OuterWall(V, F[part[F[:, 0]] == largest])
+    normals = vertex_normals(V, F)
+    for number in np.flatnonzero((np.arange(len(sizes)) != largest) & (sizes > 1)):
         inside = np.flatnonzero(part == number)
         if _is_eyeball(V[inside], points):
             settled[:, inside] = 0
         elif partnered[inside].mean() < 0.5:
+            corners, bary, share = outer.before(V[inside], normals[inside])
+            if share > 0.5:
+                moved = np.einsum("pc,kpcd->kpd", bary, shapes[:, corners])
+                settled[:, inside] = _with_neighbours(moved, adjacency(F, len(V))[inside][:, inside], outer.close)
+                continue
             nearest = whole.query(V[inside])[1]
             if within.parts and within.mouth[nearest].mean() > 0.5:
                 settled[:, inside] = _in_the_mouth(V[inside], within)
             else:
                 settled[:, inside] = shapes[:, body[_holders(V[inside], V[body])]]
     return settled
+
+
+class _OuterWall:
+    """The skin of a head, behind which a thick mesh has an inner wall that faces the other way.
+
+    ``close`` is how thick the wall may be, in units of the head.
+    """
+
+    def __init__(self, V: np.ndarray, F: np.ndarray) -> None:
+        self.close = _CLOSE * float(np.ptp(V[np.unique(F)], axis=0).max())
+        self._F, self._surface = F, FacingSurface(V, F)
+
+    def before(self, part: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """Corners (n, 3) and weights of the place before each vertex, and for what share of them it is a wall."""
+        triangles, bary, cosines = self._surface.closest(part, -normals)
+        distance = np.linalg.norm(self._surface.points(triangles, bary) - part, axis=1)
+        return self._F[triangles], bary, float(((distance <= self.close) & (cosines >= FACING)).mean())
+
+
+def _with_neighbours(moved: np.ndarray, around: sp.csr_matrix, most: float) -> np.ndarray:
+    """Displacements (k, n, 3), those that part by more from their neighbours taken from these.
+
+    In a fold of the skin the wrong side of it may be the nearest.
+    """
+    moved = moved.copy()
+    count = np.maximum(np.diff(around.indptr), 1)[:, None]
+    mean = (around @ moved.swapaxes(0, 1).reshape(len(count), -1) / count).reshape(len(count), -1, 3).swapaxes(0, 1)
+    lost = np.linalg.norm(moved - mean, axis=2).max(axis=0) > most
+    for row in np.flatnonzero(lost):
+        others = around[[row]].indices
+        others = others[~lost[others]]
+        if len(others):
+            moved[:, row] = np.median(moved[:, others], axis=1)
+    return moved
 
 
 def _holders(part: np.ndarray, body: np.ndarray) -> np.ndarray:

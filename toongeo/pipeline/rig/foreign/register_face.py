@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from toongeo._read_only import read_only
+from toongeo._read_only import read_only, restored
 from toongeo.geometry.nonrigid_register import RegisteredMesh, nonrigid_register
 from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model import MorphableModel
@@ -53,6 +53,8 @@ class RegisteredFace:
     scale: float
     rotation: np.ndarray
     shift: np.ndarray
+
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "rotation", "shift")

@@ -13,7 +13,7 @@ from toongeo.geometry.border_twins import border_twins
 from toongeo.geometry.landmark_matrix import landmark_matrix
 from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model import MorphableModel, default_model
-from toongeo.model.ibug68 import INNER
+from toongeo.model.ibug68 import INNER, MIRROR
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.align.straighten_teeth import PARTS
 from toongeo.pipeline.rig.foreign.carry_shapes import carry_shapes
@@ -28,6 +28,7 @@ __all__ = ["rig_mesh"]
 
 _LEAST_LANDMARKS = 12  # of the inner ones
 _LIKENESS = 0.5  # of their spread: how far landmarks of a face may be from the model's, root mean square
+_EXCHANGED = 0.5  # of the misfit: what is left of it with the sides exchanged, if they were
 _STILL = 1e-3  # of the largest motion: what moves less in every expression is held
 _LEAST_MATCHED = 0.5  # of the face: with less the two are not the same kind of surface
 
@@ -97,8 +98,10 @@ def rig_mesh(
     model = model or default_model()
     if not model.has("expression"):
         raise ValueError("model: expected one with named expressions, got one without")
-    vertices, faces = validate_mesh(V, F)
-    points = _checked_points(vertices, faces, landmarks, model)
+    neutral, faces = validate_mesh(V, F)
+    points = _checked_points(neutral, faces, landmarks, model)
+    middle = np.nanmean(points, axis=0)  # far from the origin, as on a map, digits are few
+    vertices, points = neutral - middle, points - middle
     twin = border_twins(vertices, faces) if weld else np.arange(len(vertices))
     faces = twin[faces]
     check_winding(vertices, faces, points, model)
@@ -126,7 +129,7 @@ def rig_mesh(
     names, deltas, gaze = split_gaze(model.expression_names[: model.n_named], deltas)
     return Rig(
         names=names,
-        neutral=vertices.copy(),
+        neutral=neutral.copy(),
         deltas=deltas,
         gaze=gaze,
         pose=np.zeros(len(names)),
@@ -154,14 +157,24 @@ def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike, model: M
     spread = np.sqrt(((found - found.mean(0)) ** 2).sum(1).mean())
     if not spread > 0:
         raise ValueError("landmarks: expected the points of a face, got one place for all")
-    scale, rotation, shift = similarity(own, found)
-    misfit = np.sqrt(((found - scale * own @ rotation.T - shift) ** 2).sum(1).mean()) / spread
+    misfit = _misfit(own, found) / spread
+    if _misfit(model.mean[model.landmarks[MIRROR[inner]]], found) / spread < _EXCHANGED * misfit:
+        raise ValueError(
+            "landmarks: left and right are exchanged, or the mesh is mirrored: points 0-7, 17-21 and 36-41 are the "
+            "subject's right side"
+        )
     if not misfit <= _LIKENESS:
         raise ValueError(
             f"landmarks: expected the points of a face in the order of iBUG-68, got ones that are off by "
             f"{misfit:.0%} of their spread from the model's, however it is turned"
         )
     return points
+
+
+def _misfit(points: np.ndarray, targets: np.ndarray) -> float:
+    """Root mean square distance of points (k, 3), moved, turned and scaled, from targets."""
+    scale, rotation, shift = similarity(points, targets)
+    return float(np.sqrt(((targets - scale * points @ rotation.T - shift) ** 2).sum(1).mean()))
 
 
 def _mouth_parts(model: MorphableModel, vertices: np.ndarray, shapes: np.ndarray) -> MouthParts:

@@ -1,15 +1,18 @@
 """A mouth that closes, whose lips do not cross, with teeth that stay in it."""
 
+import numpy as np
+
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.mouth.close_slit import close_slit
 from toongeo.pipeline.rig.mouth.hang_teeth import hang_teeth
+from toongeo.pipeline.rig.mouth.open_as_drawn import open_as_drawn
 from toongeo.pipeline.rig.mouth.seal_lips import seal_lips
 from toongeo.pipeline.rig.rig import Rig
 
 __all__ = ["fit_mouth"]
 
 
-def fit_mouth(face: AlignedFace, rig: Rig) -> Rig:
+def fit_mouth(face: AlignedFace, rig: Rig, drawn: np.ndarray | None = None) -> Rig:
     """Give lips, teeth and tongue the contacts that deformation transfer does not know of.
 
     In this order: a mouth that is drawn closed is shut in the neutral face
@@ -21,6 +24,9 @@ def fit_mouth(face: AlignedFace, rig: Rig) -> Rig:
     ----------
     face : AlignedFace
     rig : Rig
+    drawn : (n, 3) float64, mm, optional
+        Vertices of the face of the picture, where :func:`toongeo.neutral_face` closed its mouth: the rig is made to
+        show it (:func:`~toongeo.pipeline.rig.mouth.open_as_drawn.open_as_drawn`).
 
     Returns
     -------
@@ -30,4 +36,8 @@ def fit_mouth(face: AlignedFace, rig: Rig) -> Rig:
     """
     if not face.model.has("mouth_cavity"):
         return rig
-    return hang_teeth(face, seal_lips(face, close_slit(face, rig)))
+    rig = seal_lips(face, close_slit(face, rig))
+    if drawn is not None:
+        # What the contacts took from the picture's pose is among what is given back, and it must not undo them.
+        rig = seal_lips(face, open_as_drawn(face, rig, drawn))
+    return hang_teeth(face, rig)

@@ -1,30 +1,35 @@
 """The drawn eyes on the eyeballs.
 
-Constants were chosen by eye; which of the seven examples and 15 caricatures were looked at was not written down.
+Constants were chosen on one half of the pictures (``benchmarks/looks.py``).
 """
-
-from functools import lru_cache
 
 import cv2
 import numpy as np
 
 from toongeo.io import check_image
-from toongeo.model import EyeballTemplate
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig import Eyes
+from toongeo.pipeline.texture.eyes.eye_disc import EyeDisc, eye_disc
 from toongeo.pipeline.texture.eyes.find_irises import Iris
-from toongeo.pipeline.texture.face_picture import EYE_LEFT, EYE_RIGHT, MAX_SIDE, opening_mask
-from toongeo.render import Fragments, rasterize, sample_image, uv_to_px
+from toongeo.pipeline.texture.eyes.sclera import (
+    LIGHTEST_WHITE,
+    Sclera,
+    smooth_step,
+    white_of,
+    white_of_lightest,
+)
+from toongeo.pipeline.texture.eyes.whole_iris import whole_iris
 
-__all__ = ["WHITE", "bake_eyes"]
+__all__ = ["bake_eyes"]
 
-_OUTLINE = 0.05  # of the eye's width: half the thickness of a drawn line
+_RIM = (1.04, 0.08)  # radii: where the iris ends, and over how much it passes into the white
+_OUTSIDE = 1.08  # radii: from here on what is seen must look like white
+# sRGB: what is farther off the white is a lash, a lid or a second line; about a faint iris only what is farther.
+_STRANGE, _STRANGE_FAINT, _STRANGE_RAMP = 28.0, 45.0, 25.0
+_CLEAR = 0.55  # contrast of an iris that is surely one
+_SHUT = 0.3  # of the iris: an eye that shows less of where it should be is nearly shut
+_SEAM = 0.02  # of the disc's width: s.d. of the blur that joins seen and completed
 _FADE = 0.006  # of the disc's width: s.d. of the transition at the lids
-_GRAZING = 0.3  # cosine to the line of sight: nearer to the outline, a pixel covers too much of the eyeball
-_RINGS = 16  # of an iris, each of one colour where it is not seen
-_FEWEST = 8  # texels that must be seen for a colour
-_BESIDE = 1.2  # radii of the iris: farther away the eye is white
-WHITE = np.array([244.0, 242.0, 238.0])  # unseen sclera, sRGB
 
 
 def bake_eyes(
@@ -37,8 +42,10 @@ def bake_eyes(
     """Atlas whose eye discs show the eyes of the picture where they are seen; what lids hide is completed.
 
     A texel is seen if it projects between the lids, that is inside the smooth curves through the eye landmarks, with
-    the eyes turned as in the picture. The hidden part of an iris takes the median colour of its seen parts at the
-    same distance from its centre; beyond it the eye is as white as the seen white.
+    the eyes turned as in the picture. An iris is completed about its middle, and around it the eye is white as the
+    drawn white is, with its shading; lashes, lines and scraps of lid in it are left out. The white of an eye that shows
+    none is the other eye's. An eye whose iris was not found, beside one whose was, takes that, mirrored; where no iris
+    is seen at all, eyes that are drawn nearly shut have the model's behind their lids.
 
     Parameters
     ----------
@@ -48,7 +55,7 @@ def bake_eyes(
     texture : (size, size, 3) uint8 RGB
         From :func:`toongeo.bake_texture`; not written to.
     irises : left and right Iris or None, optional
-        From :func:`find_irises`; an eye without is white where it is not seen.
+        From :func:`find_irises`.
 
     Returns
     -------
@@ -63,92 +70,61 @@ def bake_eyes(
     if texture.dtype != np.uint8 or texture.ndim != 3 or texture.shape[0] != texture.shape[1] or texture.shape[2] != 3:
         raise ValueError(f"texture: expected (size, size, 3) uint8, got {texture.dtype} of shape {texture.shape}")
     atlas = texture.copy()
-    landmarks = face.project(face.vertices[face.landmark_vertices])
-    for side, rims in enumerate((EYE_LEFT, EYE_RIGHT)[: len(eyes.templates)]):
-        crop, shift, scale = _eye_crop(img, landmarks[np.unique(np.concatenate(rims))])
-        opening = opening_mask((landmarks - shift + 0.5) * scale - 0.5, rims, crop.shape[:2])
-        opening = _within_outline(opening)
-        disc = _disc_fragments(eyes.templates[side], len(texture))
-        rows, columns = np.nonzero(disc.mask)
-        box = np.s_[rows.min() : rows.max() + 1, columns.min() : columns.max() + 1]
-        corners = eyes.templates[side].faces[disc.face_ids[disc.mask]]
-        turned = eyes.looking_as_drawn(side)
-        px = (face.project(turned) - shift + 0.5) * scale - 0.5
-        ahead = face.camera.view(turned - eyes.centres[side])[:, 2] / eyes.radii[side]
-        weights = disc.barycentrics[disc.mask]
-        at = np.einsum("kc,kcd->kd", weights, px[corners])
-        column = np.clip(np.rint(at[:, 0]), 0, crop.shape[1] - 1).astype(int)
-        row = np.clip(np.rint(at[:, 1]), 0, crop.shape[0] - 1).astype(int)
-        front = np.einsum("kc,kc->k", weights, ahead[corners]) > _GRAZING
-        seen = opening[row, column] & front
-        colours = sample_image(crop, at)
-        unseen = np.tile(WHITE, (len(at), 1))
-        iris = irises[side]
-        if iris is not None:
-            away = np.linalg.norm(((at + 0.5) / scale - 0.5 + shift - iris.centre) / iris.radii, axis=1)
-            unseen = _completed(colours, np.where(front, away, np.inf), seen)
-        atlas[box] = _disc_image(rows - rows.min(), columns - columns.min(), colours, seen, unseen)
+    sides = range(len(eyes.templates))
+    discs = [eye_disc(img, face, eyes, side, irises[side], len(texture)) for side in sides]
+    whites = [white_of(disc) for disc in discs]
+    for side, disc in enumerate(discs):
+        white = _white(disc, whites[side], whites[1 - side] if len(discs) > 1 else None)
+        whole, trust = _whole(disc, white, irises[side])
+        rows, columns = disc.rows - disc.rows.min(), disc.columns - disc.columns.min()
+        atlas[_box(disc)] = _joined(rows, columns, disc.colours, trust, whole)
+    for side in sides:
+        if irises[side] is None and len(discs) > 1 and irises[1 - side] is not None:
+            mirrored = atlas[_box(discs[1 - side])][:, ::-1]
+            box = _box(discs[side])
+            atlas[box] = cv2.resize(mirrored, atlas[box].shape[1::-1], interpolation=cv2.INTER_LINEAR)
     return atlas
 
 
-def _within_outline(opening: np.ndarray) -> np.ndarray:
-    """An opening (h, w) without the drawn line around it, which belongs to the lids."""
-    width = 1 + 2 * round(_OUTLINE * np.ptp(np.nonzero(opening)[1])) if opening.any() else 1
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
-    eroded = cv2.erode(opening.astype(np.uint8), disc, borderType=cv2.BORDER_CONSTANT, borderValue=0)
-    return eroded.astype(bool)
+def _white(disc: EyeDisc, own: Sclera | None, other: Sclera | None) -> np.ndarray:
+    if own is not None:
+        return own.at(disc.unit)
+    return white_of_lightest(disc) if other is None else other.at(disc.unit, mirrored=True)
 
 
-def _eye_crop(img: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-    """The picture about an eye, its corner in pixels of the picture, and its scale (reduced if very large)."""
-    margin = 0.3 * np.ptp(points, axis=0).max() + 2
-    bounds = np.array(img.shape[1::-1])
-    start = np.clip(np.floor(points.min(0) - margin), 0, bounds - 1).astype(int)
-    end = np.clip(np.ceil(points.max(0) + margin) + 1, start + 1, bounds).astype(int)
-    crop = img[start[1] : end[1], start[0] : end[0]]
-    scale = min(1.0, MAX_SIDE / 2 / max(crop.shape[:2]))
-    if scale < 1:
-        crop = cv2.resize(crop, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
-    return np.ascontiguousarray(crop), start, scale
+def _whole(disc: EyeDisc, white: np.ndarray, iris: Iris | None) -> tuple[np.ndarray, np.ndarray]:
+    """Colours (k, 3) of an eye without lids, and how far (k,) in [0, 1] the picture is to be believed instead."""
+    colours = whole_iris(disc)
+    if iris is None or colours is None:
+        shut = disc.seen[disc.iris].mean() < _SHUT
+        return disc.default if shut else white, disc.seen.astype(float)
+    within = smooth_step((_RIM[0] - disc.away) / _RIM[1])[:, None]
+    off = np.linalg.norm(disc.colours - white, axis=1)
+    limit = _STRANGE if iris.contrast > _CLEAR else _STRANGE_FAINT
+    like = np.where(disc.away > _OUTSIDE, 1 - smooth_step((off - limit) / _STRANGE_RAMP), 1.0)
+    return within * colours + (1 - within) * white, disc.seen * like
 
 
-@lru_cache(maxsize=8)
-def _disc_fragments(template: EyeballTemplate, size: int) -> Fragments:
-    return rasterize(uv_to_px(template.uv, size, size), template.faces, size, size)
+def _box(disc: EyeDisc) -> tuple[slice, slice]:
+    """The square of the atlas about a disc."""
+    return slice(disc.rows.min(), disc.rows.max() + 1), slice(disc.columns.min(), disc.columns.max() + 1)
 
 
-def _completed(colours: np.ndarray, away: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """Colours (k, 3) of an eye where it is not seen, by the distance ``away`` (k,) from its iris in radii of that."""
-    bins = np.linspace(0, 1, _RINGS + 1)
-    ring = np.digitize(away, bins) - 1
-    known = [k for k in range(_RINGS) if (seen & (ring == k)).sum() >= _FEWEST]
-    white = seen & (away > _BESIDE)
-    lightness = colours[white].sum(1)
-    lit = lightness >= np.median(lightness) if white.any() else lightness
-    sclera = np.median(colours[white][lit], axis=0) if white.sum() >= _FEWEST else WHITE
-    unseen = np.tile(sclera, (len(colours), 1))
-    if known:
-        medians = np.array([np.median(colours[seen & (ring == k)], axis=0) for k in known])
-        within = away < 1
-        middles = (bins[:-1] + bins[1:])[known] / 2
-        unseen[within] = np.column_stack([np.interp(away[within], middles, column) for column in medians.T])
-    return unseen
-
-
-def _disc_image(
-    rows: np.ndarray, columns: np.ndarray, colours: np.ndarray, seen: np.ndarray, unseen: np.ndarray
+def _joined(
+    rows: np.ndarray, columns: np.ndarray, colours: np.ndarray, trust: np.ndarray, whole: np.ndarray
 ) -> np.ndarray:
-    """The square of the atlas about a disc: seen colours, smoothly joined to those of the unseen."""
+    """The square about a disc: seen colours as far as they are trusted, and beyond them the completed ones.
+
+    The difference of the two is carried a little beyond what is seen, so that no seam shows.
+    """
     shape = rows.max() + 1, columns.max() + 1
-    image, known = np.full((*shape, 3), WHITE), np.zeros(shape, bool)
-    beyond = image.copy()
-    beyond[rows, columns] = unseen
-    image[rows[seen], columns[seen]] = colours[seen]
-    known[rows[seen], columns[seen]] = True
-    if not known.all():
-        # Seen colours reach a little beyond the lids, where they are mixed with those of the unseen.
-        share = cv2.GaussianBlur(known.astype(np.float64), (0, 0), _FADE * known.shape[1])[..., None]
-        near = cv2.GaussianBlur(np.where(known[..., None], image, 0), (0, 0), _FADE * known.shape[1])
-        mixed = beyond + np.clip(2 * share, 0, 1) * (near / np.maximum(share, 1e-6) - beyond)
-        image = np.where(known[..., None], image, mixed)
-    return np.clip(np.rint(image), 0, 255).astype(np.uint8)
+    drawn = np.tile(LIGHTEST_WHITE, (*shape, 1))
+    drawn[rows, columns] = whole
+    completed, known = drawn.copy(), np.zeros(shape)
+    drawn[rows, columns], known[rows, columns] = colours, trust
+    near = cv2.GaussianBlur(known, (0, 0), _SEAM * shape[1])
+    off = cv2.GaussianBlur((drawn - completed) * known[..., None], (0, 0), _SEAM * shape[1])
+    completed += off / np.maximum(near, 1e-4)[..., None] * np.clip(1.6 * near, 0, 1)[..., None]
+    inner = np.minimum(known, cv2.erode(known, np.ones((3, 3))))
+    share = cv2.GaussianBlur(inner, (0, 0), _FADE * shape[1])[..., None]
+    return np.clip(np.rint(share * drawn + (1 - share) * completed), 0, 255).astype(np.uint8)

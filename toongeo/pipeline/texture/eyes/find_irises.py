@@ -11,7 +11,8 @@ import cv2
 import numpy as np
 from skimage.filters import threshold_otsu
 
-from toongeo._read_only import read_only
+from toongeo._brief_repr import brief_repr
+from toongeo._read_only import read_only, restored
 from toongeo.arrays import Singles
 from toongeo.colour.cielab import cielab
 from toongeo.io import check_image
@@ -46,6 +47,9 @@ class Iris:
     centre: np.ndarray
     radii: np.ndarray
     contrast: float
+
+    __repr__ = brief_repr
+    __setstate__ = restored
 
     def __post_init__(self) -> None:
         read_only(self, "centre", "radii")

@@ -1,0 +1,1 @@
+"""Faces of any file, moved by a take."""

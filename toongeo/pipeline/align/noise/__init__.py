@@ -1,0 +1,1 @@
+"""Parts of `denoise_landmarks`."""

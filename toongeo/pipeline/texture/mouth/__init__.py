@@ -1,0 +1,1 @@
+"""Teeth and tongue of the picture on those of the head."""
