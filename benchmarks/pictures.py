@@ -46,7 +46,7 @@ CHOSEN_ON = {
     "stages": EXAMPLES,
     "table1": (*EXAMPLES, *CARICATURES),
     "table2": (*EXAMPLES, *CARICATURES),
-    "tracking": ("astronaut", "moustache_man"),  # films of their avatars
+    "tracking": ("astronaut", "bad_guy", "blue_girl", "manga_girl", "moustache_man"),  # films, mostly of other acting
 }
 
 
