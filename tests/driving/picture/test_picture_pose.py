@@ -98,6 +98,14 @@ def test_the_frame_without_expression_is_found_in_a_film(performance):
     assert np.abs(found - truth)[truth > 0].max() < 0.3
 
 
+def test_a_wall_moves_nothing(reader, spoken):
+    grey, pose = spoken
+    after = picture_pose(reader.skin, slopes(np.full_like(grey, 90)), pose)
+    np.testing.assert_allclose(after.rotation, pose.rotation, atol=1e-6)
+    np.testing.assert_allclose(after.translation, pose.translation, atol=1e-4)
+    assert (after.weights <= pose.weights + 1e-6).all()
+
+
 def test_a_frame_that_shows_no_skin_is_refused(face, performance):
     away = performance.landmarks[AT_REST] + [400, 0]
     with pytest.raises(ValueError, match="frame: expected 200 places on the skin of a face, got 0"):

@@ -102,7 +102,7 @@ def _step(
     start = np.r_[pose.weights, np.zeros(_POSE)]
     g = H @ start - precision * (J.T @ (errors[:, None] * root)[:, 0])
     H[np.diag_indices(k)] += 1 / _SPREAD**2 + 1 / _CALM**2
-    H[range(k, k + _POSE), range(k, k + _POSE)] *= 1 + 1e-6
+    H[range(k, k + _POSE), range(k, k + _POSE)] += 1.0  # a step of a radian or a width is unheard of
     g[:k] += before / _CALM**2 - _SPARSITY * (least == 0)
     low, high = np.r_[np.full(k, least), np.full(_POSE, -np.inf)], np.r_[np.ones(k), np.full(_POSE, np.inf)]
     x = bounded_quadratic(H, g, low, high, start)
