@@ -5,7 +5,7 @@ usage: python benchmarks/alignment.py [FOLDER ...]   (pictures with .pts or .txt
 For each picture: the greatest error of an anchor, the triangles of the face that intersect others, and the mean error
 of every third landmark, left out of fit and alignment (mean of the three ways to do so); all errors in percent of the
 outer-eye distance. "Plain" is the uniform Laplacian without the flow.
-Then depth on exaggerated faces of the model, whose truth is known; then seconds against ARAP.
+Then depth on exaggerated faces of the model, whose truth is known; mouths as wide as the face; seconds against ARAP.
 """
 
 import os
@@ -31,6 +31,7 @@ from toongeo.render import ScaledOrthographicCamera
 PLAIN = {"flow": False, "slide": False}
 PHASES = 3
 # Landmarks about whose centre a part grows, how far behind them the centre lies (mm), its radius (mm), its growth.
+MOUTHS = ((0, 0, 1.5, 1.5), (0, 0, 2, 2), (0, 0, 2.3, 1.2), (35, 0, 1.8, 1.8), (35, -25, 1.8, 1.8), (-50, -20, 1.6, 2))
 PARTS = {
     "nose": ((range(30, 34), 20, 30, 1.5),),
     "eyes": ((range(36, 42), 8, 22, 1.4), (range(42, 48), 8, 22, 1.4)),
@@ -114,6 +115,30 @@ def known_depth(n: int = 3) -> None:
     print("| mean | " + " | ".join(f"{value:.2f}" for value in np.mean(list(found.values()), (0, 1))) + " |\n")
 
 
+def wide_mouths() -> None:
+    """Heads of the model whose open mouth is twice as wide and high as the model has it, from several sides."""
+    model = default_model()
+    expression = np.zeros(len(model.expression))
+    expression[model.expression_names.index("jawOpen")] = 1.0
+    print("| yaw, pitch, width, height | self-intersecting triangles: coarse | aligned | error of the mouth, mm |")
+    print("|---|---|---|---|")
+    for yaw, pitch, width, height in MOUTHS:
+        V = model.vertices(np.random.default_rng(0).normal(0, 0.5, len(model.identity)), expression)
+        away = V - V[model.landmarks[48:]].mean(0)
+        near = np.exp(-((np.linalg.norm(away / [width, height, 1], axis=1) / 30) ** 2))
+        truth = V + near[:, None] * away * [width - 1, height - 1, 0]
+        camera = ScaledOrthographicCamera.look(yaw, pitch)
+        landmarks = camera.project(truth[visible_contour(model, camera, truth, model.landmarks)])
+        fit = fit_3dmm(None, landmarks)
+        face = align_face(fit, landmarks)
+        crossings = [
+            round(crossing(shape) * model.region("face")[model.faces].all(1).sum() / 100) for shape in (fit, face)
+        ]
+        lips = model.region("lips")
+        print(f"| {yaw}, {pitch}, {width}, {height} | {crossings[0]} | {crossings[1]} ", end="")
+        print(f"| {distance(face.vertices[lips], truth[lips]):.2f} |")
+
+
 def distance(V: np.ndarray, truth: np.ndarray) -> float:
     """Mean distance of partners, mm, after the best similarity."""
     scale, rotation, shift = similarity(V, truth)
@@ -162,6 +187,7 @@ def times() -> None:
 def main() -> None:
     picture_rows(pictures(sys.argv[1:]))
     known_depth()
+    wide_mouths()
     times()
 
 

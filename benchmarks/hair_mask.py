@@ -14,7 +14,7 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 
 import sys
 import time
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from itertools import product
 from pathlib import Path
 
@@ -23,7 +23,7 @@ import numpy as np
 
 from toongeo import find_hair, fit_3dmm, read_image, read_landmarks
 from toongeo.pipeline.parse.hair.hair_model import hair_model
-from toongeo.pipeline.parse.hair.hair_trust import RULES, HairMeasures, distrust
+from toongeo.pipeline.parse.hair.hair_trust import RULES, HairMeasures
 from toongeo.pipeline.parse.hair.hair_view import hair_view
 from toongeo.pipeline.parse.hair.head_zones import head_zones
 from toongeo.pipeline.parse.hair.segment_hair import segment_hair
@@ -114,21 +114,21 @@ def sheet(img, hand, hair, text: str) -> np.ndarray:
 def chosen(cases: list[Case]) -> dict[str, tuple[float, float]]:
     """Limits that trust most pictures of a half, none of them wrongly; of equal ones those that ask most."""
     best, limits = (-1, 0.0), {}
-    grid = np.arange(0.5, 0.96, 0.05), np.arange(0.6, 0.96, 0.05), (0.1, 0.15, 0.2, 0.3)
-    for agreement, inside, outside in product(*grid):
-        trial = {"agreement": (agreement, 1.0), "inside": (inside, 1.0), "outside": (0.0, outside)}
+    grid = np.arange(1.4, 1.81, 0.02), np.arange(0.7, 0.96, 0.05), (0.0, 0.8, 0.9, 0.95)
+    for certainty, agreement, outlined in product(*grid):
+        trial = {"certainty": (certainty, 2.0), "agreement": (agreement, 1.0), "outlined": (outlined, 1.0)}
         kept = [case for case in cases if trusted_by(case, trial)]
         wrong = [case for case in kept if case.found < GOOD or not case.hairy]
-        score = len(kept) - 5 * len(wrong), float(agreement + inside - outside)
+        score = len(kept) - 5 * len(wrong), float(certainty + agreement + outlined)
         if score > best:
             best, limits = score, trial
     return limits
 
 
 def trusted_by(case: Case, limits: dict[str, tuple[float, float]]) -> bool:
-    neutral = replace(case.measures, agreement=1.0, inside=1.0, outside=0.0)
-    values = asdict(case.measures)
-    return not distrust(neutral) and all(least <= values[name] <= most for name, (least, most) in limits.items())
+    """The rules in use, with other limits for some."""
+    rules = [(name, *limits.get(name, (least, most))) for name, least, most, _ in RULES]
+    return all(least <= getattr(case.measures, name) <= most for name, least, most in rules)
 
 
 def main() -> None:
@@ -137,11 +137,11 @@ def main() -> None:
     out = None if where is None else Path(arguments[where + 1])
     names = [a for k, a in enumerate(arguments) if where is None or k not in (where, where + 1)]
     cases = [measured(name) for name in names or sorted(path.stem for path in (DATA / "hair_masks").glob("*.png"))]
-    keys = list(asdict(cases[0].measures))
+    keys = [*asdict(cases[0].measures), "certainty"]
     print("| picture | IoU | rival | trusted | s | " + " | ".join(keys) + " |")
     print("|" + "---|" * (5 + len(keys)))
     for case in cases:
-        values = " | ".join(f"{asdict(case.measures)[key]:.2f}" for key in keys)
+        values = " | ".join(f"{getattr(case.measures, key):.2f}" for key in keys)
         verdict = "yes" if case.trusted else "no"
         print(f"| {case.name} | {case.found:.3f} | {case.rival:.2f} | {verdict} | {case.seconds:.2f} | {values} |")
     summary("all", cases, [case.trusted for case in cases])

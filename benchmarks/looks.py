@@ -95,7 +95,9 @@ def skull(avatar: Avatar) -> float:
 
 
 def ears(avatar: Avatar) -> float:
-    """Largest over least stretch of an ear against that of the fit, the worse of both."""
+    """Largest over least stretch of an ear against that of the fit, the worse of both; those under hair give way."""
+    if avatar.hair is not None:
+        return float("nan")
     fit, V, worst = avatar.fit.vertices, avatar.face.vertices, 1.0
     for side in SIDES:
         ear = avatar.face.region(f"ear_{side}")
@@ -130,7 +132,7 @@ def main() -> None:
     print(f"{'':<26} soot %  spread   nose  skull %   ears  forehead")
     for picture in found:
         img = read_image(picture.image)
-        rows.append(row(make_avatar(img, read_landmarks(picture.landmarks), hair=False), img))
+        rows.append(row(make_avatar(img, read_landmarks(picture.landmarks)), img))
         soot, spread, tip, top, flap, levels = rows[-1]
         print(
             f"{picture.name:<26} {soot:6.1f} {spread:7.1f} {tip:6.2f} {top:8.1f} {flap:6.2f} {levels:9.1f}", flush=True

@@ -49,6 +49,16 @@ def test_a_picture_without_a_face_is_refused(tmp_path, capsys):
     assert "found in the picture" in capsys.readouterr().err
 
 
+def test_noise_is_a_number_or_auto(tmp_path, capsys):
+    arguments = ["make", str(PICTURE), "--landmarks", str(POINTS), "-o", str(tmp_path / "girl.glb"), "--noise"]
+    assert main([*arguments, "-0.1"]) == 2
+    assert "noise: expected 'auto' or a number >= 0" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main([*arguments, "some"])
+    assert "--noise" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
 def test_make_crops_snaps_and_refines(tmp_path, capsys):
     whole, face = tmp_path / "whole.ply", tmp_path / "face.ply"
     arguments = ["make", str(PICTURE), "--landmarks", str(POINTS), "--texture-size", "64"]

@@ -67,11 +67,11 @@ def detection_warnings(found: LandmarkDetection) -> tuple[str, ...]:
 
 
 def eye_warnings(irises: tuple[Iris | None, Iris | None]) -> list[str]:
-    """Which eyes show too little to be opened as they are."""
+    """Which eyes show too little of themselves, so that something else stands in for it."""
     without = [name for name, iris in zip(SIDES, irises, strict=True) if iris is None]
     if len(without) == len(SIDES):
-        return ["the eyes show no iris: what their lids hide is guessed"]
-    return [f"the {name} eye shows no iris: the other eye's stands in for it" for name in without]
+        return ["no iris was found: what lids hide of the eyes is guessed"]
+    return [f"no iris was found in the {name} eye: the other eye's stands in for it" for name in without]
 
 
 def shape_warnings(face: AlignedFace, eyes: Eyes, quality: MeshQuality) -> list[str]:

@@ -1,7 +1,9 @@
 import numpy as np
 
+from toongeo.pipeline.hair.colours.picture_colours import PictureColours
 from toongeo.pipeline.hair.colours.quilted import quilted
 from toongeo.pipeline.hair.colours.strand_frame import StrandFrame
+from toongeo.pipeline.hair.colours.strand_patches import strand_patches
 
 
 def test_quilt_is_made_of_patches(rng):
@@ -34,3 +36,17 @@ def test_strands_run_down_and_nothing_is_squeezed_at_the_crown():
     across, along = frame.at(np.array([crown, crown + [5.0, 0, 0]]))
     assert 5.0 <= np.hypot(across[1] - across[0], along[1] - along[0]) <= 10.0
     assert 0 <= across.min() <= across.max() <= frame.breadth
+
+
+def test_grain_becomes_strands_of_its_own_contrast(rng):
+    """White noise 2 mm apart along strands becomes alike; 3 mm apart across them it stays unlike."""
+    noise = (128 + 20 * rng.standard_normal((120, 120, 1))).repeat(3, 2).astype(np.float32)
+    flat = np.full_like(noise, 128)
+    inside = np.full(noise.shape[:2], 40, np.float32)
+    colours = PictureColours(noise, flat, flat, inside > 0, inside, 1.0)
+    patches = strand_patches(colours, 1.0, rng)[..., 0]
+    patches -= patches.mean((1, 2), keepdims=True)
+    power = (patches**2).mean()
+    assert (patches[:, 2:] * patches[:, :-2]).mean() > 0.6 * power
+    assert abs((patches[:, :, 3:] * patches[:, :, :-3]).mean()) < 0.15 * power
+    assert 10 < power**0.5 < 22

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from toongeo import find_hair, fit_3dmm
+from toongeo import detect_landmarks, find_hair, fit_3dmm
 from toongeo.model.ibug68 import MIRROR
 
 NAMES = ("moustache_man", "blue_girl", "beethoven")
@@ -59,6 +59,13 @@ def test_a_bald_head_is_refused(shared):
         cv2.cvtColor(cv2.imread(str(folder / "44.jpg")), cv2.COLOR_BGR2RGB), np.loadtxt(folder / "44.txt")
     )
     assert not found.trusted and found.reasons
+    assert not found.mask.any() and not found.hat.any() and not found.alpha.any()  # nothing looks like hair
+
+
+def test_points_of_a_detector_serve_as_well(hair, cartoon):
+    img, _ = cartoon("blue_girl")
+    found = find_hair(img, detect_landmarks(img).points)
+    assert found.trusted and overlap(found.mask, hair["blue_girl"].mask) > 0.95
 
 
 def test_one_colour_shows_no_hair(cartoon):

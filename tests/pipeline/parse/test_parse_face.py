@@ -188,7 +188,21 @@ def test_a_hat_gets_its_own_label(drawn_face):
     finder = lambda *_: HairMask(np.zeros_like(hat), False, ("a hat",), hat=hat)  # noqa: E731
     parse = ClassicalParser(hair_finder=finder)(drawn_face.img, drawn_face.landmarks)
     np.testing.assert_array_equal(parse.mask(FaceLabel.HAT), hat)
-    assert not parse.mask(FaceLabel.HAIR).any() and parse.hair.reasons == ("a hat",)
+    assert not parse.hair.mask.any() and parse.hair.reasons == ("a hat",)
+
+
+def test_a_mask_that_is_not_trusted_does_not_rule_the_labels(drawn_face, parse):
+    """Skin and background in it are no hair; where nothing was found the cuts of head and skin tell the hair."""
+    true = drawn_face.labels == FaceLabel.HAIR
+    wrong = true.copy()
+    wrong[:20, :60] = wrong[200:230, 190:220] = True
+    for mask in (wrong, np.zeros_like(true)):
+        finder = lambda *_, mask=mask: HairMask(mask, False, ("doubtful",))  # noqa: E731
+        found = ClassicalParser(hair_finder=finder)(drawn_face.img, drawn_face.landmarks)
+        assert overlap(found.mask(FaceLabel.HAIR), true) > 0.8
+        np.testing.assert_array_equal(found.hair.mask, mask)
+    trusting = ClassicalParser(hair_finder=lambda *_: HairMask(wrong, True))(drawn_face.img, drawn_face.landmarks)
+    assert (trusting.labels[:20, :60] == FaceLabel.HAIR).mean() > 0.9
 
 
 def test_hair_of_a_plugged_in_parser_is_that_of_its_labels(drawn_face):

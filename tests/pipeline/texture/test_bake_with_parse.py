@@ -8,6 +8,7 @@ import pytest
 
 from toongeo.pipeline import bake_texture
 from toongeo.pipeline.texture.bake_texture import _atlas_fragments
+from toongeo.pipeline.texture.vertex_colours import vertex_colours
 from toongeo.protocols import FaceLabel, FaceParse
 
 HAIR, SKIN = (60, 30, 10), (220, 170, 140)
@@ -82,3 +83,20 @@ def test_bad_arguments_are_named(face, cartoon):
         bake_texture(img, face, delight=True)
     with pytest.raises(ValueError, match=r"parse: expected labels of the picture's shape"):
         bake_texture(img, face, parse=FaceParse(np.ones(small.shape[:2], np.uint8), np.ones(small.shape[:2])))
+
+
+def test_a_gleaming_forehead_is_the_one_that_is_drawn(face, cartoon):
+    """Far from the skin's colour, but the parse calls it skin; what it does not call so is replaced all the same."""
+    img, parse = painted(face, cartoon("moustache_man")[0].shape, hair=False)
+    brow = face.project(face.vertices[face.landmark_vertices])[17:27, 1].min()
+    gleam = np.array([250, 235, 225], np.uint8)
+    img[: int(brow) - 5] = gleam
+    drawn = bake_texture(img, face, size=256, parse=parse)
+    labels = parse.labels.copy()
+    labels[: int(brow) - 5] = FaceLabel.BACKGROUND
+    filled = bake_texture(img, face, size=256, parse=dataclasses.replace(parse, labels=labels))
+    above = face.region("forehead") & (face.project(face.vertices)[:, 1] < brow - 15) & (face.normals[:, 2] > 0.7)
+    at = {name: vertex_colours(face.model, atlas)[above] for name, atlas in (("drawn", drawn), ("filled", filled))}
+    assert above.sum() > 20
+    assert np.abs(np.median(at["drawn"], axis=0) - gleam).max() < 6
+    assert np.abs(np.median(at["filled"], axis=0) - SKIN).max() < 6

@@ -15,6 +15,7 @@ from toongeo._read_only import read_only, restored
 from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.visible_contour import visible_contour
+from toongeo.pipeline.align.bounded_nose import bounded_nose
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
 from toongeo.pipeline.align.denoise_landmarks import LandmarkNoise, Noise, denoise_landmarks
 from toongeo.pipeline.align.keep_ears_rigid import keep_ears_rigid
@@ -23,6 +24,7 @@ from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
 from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.straighten_teeth import straighten_teeth
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
+from toongeo.pipeline.align.unfolded_start import unfolded_start
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.protocols import HeadCamera
@@ -65,7 +67,7 @@ class AlignedFace:
         Vertices that served as anchors.
     model : MorphableModel
     fit : FaceFit
-        The coarse fit from which the face was deformed.
+        The coarse fit from which the face was deformed; with less of its expression where that folds the skin.
     report : AlignReport
     """
 
@@ -132,13 +134,13 @@ def align_face(
     depth : {"keep", "scaled"}
         ``"keep"`` is Eq. 11: how far a vertex is from the camera does not change, so that a nose drawn twice as
         big stays as flat as it was. With ``"scaled"`` the flow has depth too: what grows in the picture grows
-        towards the viewer as well, and what a turned face shows of one half happens to the other. Without the flow
-        the two are the same.
+        towards the viewer as well, and what a turned face shows of one half happens to the other; a nose comes
+        forward no farther than noses do. Without the flow the two are the same.
     slide : bool
         Whether jaw points slide along their contour lines to where the outline of the deformed head is.
         ``landmark_vertices`` of the result tell where they ended.
     flow : bool
-        False: _Laplacian deformation alone, as in the paper, which folds lids and lips of strong exaggerations.
+        False: Laplacian deformation alone, as in the paper, which folds lids and lips of strong exaggerations.
     noise : "auto" or float
         Standard deviation of the landmarks' noise, in outer-eye distances. Noisy points are smoothed, and points that
         the others contradict are put back, before the face is moved to them; ``"auto"`` does so only where it is plain
@@ -154,7 +156,7 @@ def align_face(
     ------
     ValueError
         If landmarks have another shape, hold infinities or are all missing, the weight is negative or not finite, or
-        the _Laplacian, the depth rule or the noise is unknown.
+        the Laplacian, the depth rule or the noise is unknown.
     """
     started = time.perf_counter()
     given = ibug_landmarks(landmarks, scheme)
@@ -162,12 +164,16 @@ def align_face(
         raise ValueError(f"depth: expected 'keep' or 'scaled', got {depth!r}")
     cleaned = denoise_landmarks(fit, given, noise)
     landmarks = cleaned.points
+    if flow:
+        fit = unfolded_start(fit)
     V, at = fit.vertices, fit.landmark_vertices
     if flow:
         V, at = symmetric_flow(fit.model, fit.camera, V, at, landmarks, depth, slide)
     elif slide:
         at = visible_contour(fit.model, fit.camera, _anchored(fit, V, at, landmarks, weight, laplacian), at)
     aligned = _anchored(fit, V, at, landmarks, weight, laplacian)
+    if flow and depth == "scaled":
+        aligned = bounded_nose(fit.model, fit.camera, aligned)
     inner = straighten_teeth if flow else carry_inner_parts
     aligned = keep_teeth_inside(fit.model, inner(fit.model, fit.vertices, aligned))
     if flow:

@@ -96,7 +96,8 @@ def denoise_landmarks(fit: FaceFit, landmarks: Floats, noise: Noise = "auto") ->
         NaN rows are missing.
     noise : "auto" or float
         Standard deviation in outer-eye distances; 0: the points are exact. ``"auto"``: as found, and points that seem
-        to be set with care (below 0.018) are left as they are, but for those that are off by 0.25 and more.
+        to be set with care (below 0.018) are left as they are, but for those that are off by 0.25 and more. Nothing is
+        done on a model without expressions.
 
     Returns
     -------
@@ -122,7 +123,9 @@ def denoise_landmarks(fit: FaceFit, landmarks: Floats, noise: Noise = "auto") ->
     """
     check_noise(noise)
     seen = np.flatnonzero(np.isfinite(landmarks).all(1))
-    if noise == 0 or len(seen) < _FEWEST:
+    # A model without expressions misses those of the picture, which is not the landmarks' fault.
+    blind = noise == "auto" and not fit.model.has("expression")
+    if noise == 0 or blind or len(seen) < _FEWEST:
         return DenoisedLandmarks(landmarks, LandmarkNoise())
     covariance, missed, px = _observations(fit, landmarks, seen)
     kept, amplitude, sigma = _believed(covariance, missed, noise)

@@ -18,6 +18,7 @@ from toongeo.io.landmark_array import landmark_array
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.completed_landmarks import completed_landmarks
+from toongeo.pipeline.parse.doubtful_hair import doubtful_hair
 from toongeo.pipeline.parse.face_zones import FaceZones, face_zones
 from toongeo.pipeline.parse.find_hair import find_hair
 from toongeo.pipeline.parse.head_and_skin import HeadAndSkin, head_and_skin
@@ -42,8 +43,9 @@ class ClassicalParser:
     head and a model of the skin's colour that is learned from the face itself. The eyes are found in the picture
     at its own resolution: shifted and scaled copies of the landmarks' contour are weighed by what is inside them and
     across their line. Brows are what differs from skin along their landmarks; nose and lips are where
-    the landmarks are. Hair and hats are where ``hair_finder`` finds them. Dark outlines belong to neither side: they
-    are ``OTHER``, and so are glasses and beards; clothes are background.
+    the landmarks are. Hair and hats are where ``hair_finder`` finds them; a mask that is not trusted loses what the
+    other cuts take for skin or background, and if it is empty, hair is what of the head is not skin. Dark outlines
+    belong to neither side: they are ``OTHER``, and so are glasses and beards; clothes are background.
 
     Parameters
     ----------
@@ -86,7 +88,9 @@ class ClassicalParser:
         with one_thread():
             cut = head_and_skin(view, zones)
         hair = self.hair_finder(img, given, face)
-        labels = _labels(view, zones, cut, _in_view(view, hair.mask))
+        mask = _in_view(view, hair.mask)
+        mask = mask if hair.trusted else doubtful_hair(view, zones, cut, mask)
+        labels = _labels(view, zones, cut, mask)
         labels, confidence = _full_size(view, labels, cut.confidence, img.shape[:2])
         if hair.hat is not None:
             labels[hair.hat] = FaceLabel.HAT

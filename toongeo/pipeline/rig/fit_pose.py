@@ -9,6 +9,7 @@ from toongeo.pipeline.rig.rig import Rig
 __all__ = ["fit_pose"]
 
 _RIDGE = 1e-6  # of the mean square of the blendshapes: decides between expressions that do the same
+_LEAST = 0.002  # a weight below it moves nothing by 0.1 mm
 
 
 def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray, *, ridge: float = _RIDGE) -> np.ndarray:
@@ -45,4 +46,5 @@ def fit_pose(rig: Rig, vertices: np.ndarray, where: np.ndarray, *, ridge: float 
         # The normal equations hold all of the problem: with a root of the Gram matrix it is one of 46 rows.
         root = np.linalg.cholesky(gram + ridge * np.trace(gram) * np.eye(len(gram)))
         solution = lsq_linear(root.T, np.linalg.solve(root, right), bounds=(0.0, 1.0), method="bvls")
-    return np.asarray(solution.x)
+    found = np.clip(solution.x, 0.0, 1.0)
+    return np.where(found < _LEAST, 0.0, found)

@@ -78,7 +78,8 @@ def face_picture(img: np.ndarray, face: AlignedFace, parse: FaceParse | None = N
     """Crop a picture to the projected face and find the skin in it.
 
     Skin is where the front of the face projects, less the eyes and the open mouth. Beyond the hull of the landmarks
-    (forehead, temples), where hair and background may cover the face, the colour must also be that of the skin.
+    (forehead, temples), where hair and background may cover the face, a parse must call it skin, or the colour must be
+    that of the skin.
 
     Parameters
     ----------

@@ -62,7 +62,10 @@ def skin_mask(
             )
     small = crop if scale == 1 else cv2.resize(crop, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     reduced = front if scale == 1 else resized(front.astype(np.uint8), small.shape, cv2.INTER_AREA) > 0
-    masks = _skin_pixels(small, (landmarks + 0.5) * scale - 0.5, reduced)
+    given = np.zeros(reduced.shape, bool)
+    if parts is not None:
+        given = resized(np.isin(parts, _PARSED_FACE).astype(np.uint8), small.shape, cv2.INTER_NEAREST) > 0
+    masks = _skin_pixels(small, (landmarks + 0.5) * scale - 0.5, reduced, given)
     # What lies beyond the picture is unknown, so its edge erodes too.
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * rim + 1, 2 * rim + 1))
     inside = cv2.erode(allowed, disc, borderType=cv2.BORDER_CONSTANT, borderValue=0).astype(bool) & front
@@ -135,12 +138,15 @@ def _skin_tones(lab: np.ndarray, core: np.ndarray) -> np.ndarray:
     return np.array([pixels[max(0, middle - band) : middle + band].mean(0) for middle in middles])
 
 
-def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _skin_pixels(
+    crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray, given: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Front pixels that show the face, and among them those that surely have the colour of its skin.
 
     Within the landmarks' hull everything is the face (brows, shadows, outlines) but for broad areas of another colour
     that reach in from outside, which are hair; between eyes, nose, mouth and chin there is none. Skin may be lit from
-    one side, so within the hull its colour is any of several tones; beyond the hull only the middle one counts.
+    one side, so within the hull its colour is any of several tones; beyond the hull only the middle one counts, unless
+    a parse gives the pixel as face: foreheads gleam, and pale or dark ones are foreheads still.
     """
     width = max(3, int(0.03 * np.ptp(landmarks[:, 0])))
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * width + 1, 2 * width + 1))
@@ -164,10 +170,11 @@ def _skin_pixels(crop: np.ndarray, landmarks: np.ndarray, front: np.ndarray) -> 
         distance = np.where(hull > 0, np.minimum(distance, np.linalg.norm(lab - tone, axis=2)), distance)
     spread = float(np.clip(2.5 * np.median(middle[inner]), *_SPREAD))
 
-    broad = cv2.morphologyEx((front & (distance > spread)).astype(np.uint8), cv2.MORPH_OPEN, disc)
+    broad = cv2.morphologyEx((front & (distance > spread) & ~given).astype(np.uint8), cv2.MORPH_OPEN, disc)
     _, labels = cv2.connectedComponents(broad)
     reaching = np.setdiff1d(np.unique(labels[(hull == 0) & (broad > 0)]), 0)
     hair = cv2.dilate(np.isin(labels, reaching).astype(np.uint8), disc[::2, ::2]).astype(bool)
     hair &= ~(brows.astype(bool) | core)
-    likely = cv2.erode((front & (distance < spread)).astype(np.uint8), disc[::2, ::2]).astype(bool)
+    like_skin = (distance < spread) | (given & (hull == 0))
+    likely = cv2.erode((front & like_skin).astype(np.uint8), disc[::2, ::2]).astype(bool)
     return (inner | likely) & ~hair, likely & ~hair

@@ -21,6 +21,7 @@ __all__ = ["unseen_colours"]
 _FADE_RINGS = 24  # edges over which unseen skin fades from its nearest seen colour to the mean skin colour
 _INNER_RINGS = 3  # edges over which the inner side of lids and lips takes on the model's colour
 _FRONTAL = 0.45  # cosine to the viewer from which a vertex is seen well
+_GRAZING = 0.15  # the same for hair, of which only the middle colour is taken: short hair is seen from the side
 _SMOOTHING = 24  # passes that take the streaks out of the breadth-first diffusion
 _SOFT = 12  # passes that soften the hairline
 _BLUR_SIDE = 256  # px; the picture is blurred at this size
@@ -72,12 +73,12 @@ def _outer_edges(model: MorphableModel) -> sp.csr_array:
     return adjacency(model.faces[outside[model.faces].all(1)], len(model.mean)).astype(float)
 
 
-def _seen(face: AlignedFace, picture: FacePicture, mask: np.ndarray) -> np.ndarray:
+def _seen(face: AlignedFace, picture: FacePicture, mask: np.ndarray, least: float = _FRONTAL) -> np.ndarray:
     """Vertices (n,) that face the camera and fall well inside a mask of the crop."""
     safe = cv2.erode(mask.astype(np.uint8), np.ones((5, 5), np.uint8))
     at = sample_image(safe.astype(np.float32)[..., None], picture.points)[:, 0]
     inside = ((picture.points >= 0) & (picture.points <= np.array(safe.shape[::-1]) - 1)).all(1)
-    return (picture.cosines > _FRONTAL) & inside & (at > 0.99)
+    return (picture.cosines > least) & inside & (at > 0.99)
 
 
 def _blurred_at(picture: FacePicture, mask: np.ndarray) -> np.ndarray:
@@ -130,7 +131,7 @@ def _with_hair(
     if picture.hair is None or not {"scalp", "forehead", "ears"} <= set(regions):
         return colours
     hairy = regions["scalp"] | regions["forehead"]
-    seen = _seen(face, picture, picture.hair) & hairy & ~skin
+    seen = _seen(face, picture, picture.hair, _GRAZING) & hairy & ~skin
     if seen.sum() < _HAIR_VERTICES:
         return colours
     own = _blurred_at(picture, picture.hair)

@@ -62,7 +62,7 @@ def test_one_identity_and_three_poses(person):
     for fit, camera in zip(fits, CAMERAS, strict=True):
         np.testing.assert_array_equal(fit.identity, fits[0].identity)
         assert fit.camera.yaw == pytest.approx(camera.yaw, abs=5)
-        assert fit.report.rms_percent < 6
+        assert fit.report.rms_percent < 6 and 1 <= fit.report.passes <= 10
     assert np.abs(fits[0].expression - fits[1].expression).max() > 0.01
 
 
@@ -71,7 +71,6 @@ def test_a_list_of_one_is_the_fit_of_one(person):
     (listed,) = fit_3dmm_together([None], [points])
     alone = fit_3dmm(None, points)
     np.testing.assert_allclose(listed.vertices, alone.vertices, atol=1e-9)
-    assert 1 <= alone.report.passes <= 10
     assert (listed.report.passes, listed.report.evaluations) == (alone.report.passes, alone.report.evaluations)
 
 

@@ -11,7 +11,7 @@ from toongeo.pipeline.parse.hair.hair_alpha import hair_alpha
 from toongeo.pipeline.parse.hair.hair_trust import HairMeasures, distrust, hair_measures
 from toongeo.pipeline.parse.hair.superpixels import superpixels
 
-GOOD = HairMeasures(area=0.4, agreement=0.95, inside=0.95, outside=0.05, topped=1.0, border=0.0, hat=0.0)
+GOOD = HairMeasures(area=0.4, agreement=0.95, inside=0.95, outside=0.05, topped=1.0, border=0.0, hat=0.0, outlined=1.0)
 
 
 def test_evidence_is_antisymmetric_in_its_sides(rng):
@@ -62,21 +62,26 @@ def test_measures_of_a_crown_that_is_known(zones, cap):
     posterior = np.where(cap, 0.8, 0.1).astype(np.float32)
     half = cap.copy()
     half[:45] = False
-    found = hair_measures(cap, half, zones, posterior, posterior / 4)
+    lab = np.where(cap[..., None], np.float32([20, 0, 0]), np.float32([70, 10, 10]))
+    found = hair_measures(lab, cap, half, zones, posterior, posterior / 4)
     assert found.area == pytest.approx(cap.sum() / zones.head**2)
     assert found.agreement == pytest.approx(half.sum() / cap.sum())
     assert (found.inside, found.outside, found.hat) == pytest.approx((0.8, 0.1, 0.25), abs=1e-5)
-    assert found.topped == 1 and found.border == 0
+    assert found.certainty == pytest.approx(found.agreement + 0.7)
+    assert found.topped == 1 and found.border == 0 and found.outlined == 1
     low = cap & (zones.up < 0.5)
-    assert hair_measures(low, low, zones, posterior, posterior).topped > 0.9
+    assert hair_measures(lab, low, low, zones, posterior, posterior).topped > 0.9
     side = cap & (zones.across < 0)
-    assert 0.4 < hair_measures(side, side, zones, posterior, posterior).topped < 0.6
+    halved = hair_measures(lab, side, side, zones, posterior, posterior)
+    assert 0.4 < halved.topped < 0.6
+    assert 0.5 < halved.outlined < 0.8  # no outline along the middle line
 
 
 def test_measures_of_nothing(zones):
     nothing = np.zeros(zones.skull.shape, bool)
     field = np.full(nothing.shape, 0.2, np.float32)
-    found = hair_measures(nothing, nothing, zones, field, field)
+    lab = np.zeros((*nothing.shape, 3), np.float32)
+    found = hair_measures(lab, nothing, nothing, zones, field, field)
     assert found.area == 0 and found.topped == 0 and distrust(found)
 
 
@@ -84,15 +89,19 @@ def test_good_measures_are_trusted_and_each_bad_one_is_named():
     assert distrust(GOOD) == ()
     bad = {
         "area": (0.0, "hardly any"),
-        "agreement": (0.3, "disagree"),
-        "inside": (0.5, "doubtful"),
-        "outside": (0.4, "beyond"),
+        "agreement": (0.84, "disagree"),
+        "inside": (0.64, "doubtful"),
+        "outside": (0.4, "hard to tell"),
+        "outlined": (0.8, "no outline"),
         "topped": (0.2, "top"),
         "border": (0.9, "border"),
         "hat": (0.8, "hat"),
     }
     for name, (value, word) in bad.items():
-        (reason,) = distrust(dataclasses.replace(GOOD, **{name: value}))
+        # Of a clear case, so that no other limit is reached.
+        clear = dataclasses.replace(GOOD, agreement=1.0, inside=1.0, outside=0.0)
+        clear = clear if name != "outside" else GOOD
+        (reason,) = distrust(dataclasses.replace(clear, **{name: value}))
         assert word in reason
 
 

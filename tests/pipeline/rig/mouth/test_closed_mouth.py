@@ -7,7 +7,7 @@ from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.model.anatomy.lip_line import lip_line
 from toongeo.model.anatomy.lips_apart import lips_apart
 from toongeo.model.anatomy.motion_shares import motion_shares
-from toongeo.pipeline import build_rig, neutral_face
+from toongeo.pipeline import build_rig, fit_mouth, neutral_face
 from toongeo.pipeline.rig.fit_pose import fit_pose
 from toongeo.pipeline.rig.mouth.contact_line import contact_line
 from toongeo.pipeline.rig.mouth.lower_face import crossing_count, strain, uncrossed
@@ -94,6 +94,23 @@ def test_the_rig_shows_the_mouth_as_it_is_drawn(drawn):
     width = np.linalg.norm(np.subtract(*face.vertices[face.model.landmarks[[48, 54]]]))
     assert misses[1] < 0.005 * width < misses[0]
     np.testing.assert_array_equal(rig.neutral, plain.neutral)
+
+
+def test_with_all_contacts_it_still_does_and_the_lips_seal(drawn, model):
+    face, rest = drawn
+    rig = fit_mouth(rest, build_rig(rest), face.vertices)
+    shown = rig.vertices(fit_pose(rig, face.vertices, face.region("skin")))
+    width = np.linalg.norm(np.subtract(*face.vertices[model.landmarks[[48, 54]]]))
+    assert np.sqrt(((shown - face.vertices)[face.region("mouth")] ** 2).sum(1).mean()) < 0.01 * width
+    assert lips_apart(model, rig.vertices({"jawOpen": 1.0, "mouthClose": 1.0})) < 0.01
+    assert rig.report.lips_closure > 95
+
+
+def test_a_ridge_makes_weights_smaller(drawn):
+    face, rest = drawn
+    rig, skin = build_rig(rest), face.region("skin")
+    small, large = (fit_pose(rig, face.vertices, skin, ridge=ridge).sum() for ridge in (1e-6, 1e-1))
+    assert 0 < large < small
 
 
 def test_only_what_opens_or_smiles_changes_and_only_where_the_template_moves(drawn, model):

@@ -65,7 +65,10 @@ class Texels:
 
 
 def panels(mesh: ShellMesh, normals: Reals, front_density: float, density: float) -> list[Panel]:
-    """The panels that have triangles; the front one has a density (texels per mm) of its own, normals are a vertex."""
+    """The panels that have triangles; the front one has a density of its own, texels per mm.
+
+    ``normals`` (n, 3) are those of the vertices.
+    """
     V, F = mesh.vertices, mesh.faces
     facing = normals[F].mean(1) @ _VIEWS[:, 2].T
     seen = mesh.front & mesh.shown

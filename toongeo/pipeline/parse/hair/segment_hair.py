@@ -55,7 +55,7 @@ def segment_hair(view: WorkingView, zones: HeadZones, model: HairModel) -> Segme
     hat = _hat(both, chances, zones)
     alpha = hair_alpha(view.pixels, both & ~hat, zones.head)
     mean = (guess + chances) / np.float32(2)
-    measures = hair_measures(both, other, zones, _cover(mean), mean[..., 2])
+    measures = hair_measures(lab, both, other, zones, _cover(mean), mean[..., 2])
     return SegmentedHair(both & ~hat, hat, alpha, measures)
 
 

@@ -20,7 +20,7 @@ __all__ = ["NEEDS", "closed_mouth"]
 NEEDS = ("mouth_cavity", "jaw", "lip_upper", "lip_lower", "jawOpen")
 # Nothing of these goes along: the nose would be drawn down with the upper lip.
 _HELD = (
-    "nose", "eye_left", "eye_right", "brow_left", "brow_right", "forehead", "scalp", "ears",
+    "nose", "eye_left", "eye_right", "brow_left", "brow_right", "forehead", "ears",
     "socket_left", "socket_right",
 )  # fmt: skip
 _SHARES = (1.0, 0.9, 0.8, 0.7, 0.6)  # of the gap that are tried
@@ -30,6 +30,7 @@ _TENSION = 2e-3  # 1/mm^2, of the plate
 _CLAMP = 1e-2  # least weight of an edge, and least mass of a vertex in terms of the median
 _TUBE, _CHIN = 10.0, 0.3  # stiffness, in terms of the plate's own, with which lips and chin move as a whole
 _STRETCH = 0.25  # of the height of lower lip and chin: by so much the lip moves alone before the chin follows
+_ALONG = 0.5  # of the jaw's way that is along the lip's, at least: a jaw cannot mend a lip that is drawn aside
 _CHIN_SHARE = 0.8  # of the motion of the template's chin: what moves so much in `jawOpen` is chin
 _BELOW_LIP_MM = 4.0  # on the template
 
@@ -40,7 +41,7 @@ def closed_mouth(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     Both lips move to the line where they meet (:func:`contact_line`) as tubes, the chin, lower teeth and tongue follow
     the lower lip, and the skin between bends as a thin plate on the drawn mesh. That is done to the largest share that
     brings no crossings, after the skin around a few of them was smoothed, and no strain beyond 2.6; or else to the one
-    with the fewest crossings.
+    with the fewest crossings, of these the one with the least strain.
 
     Parameters
     ----------
@@ -49,16 +50,17 @@ def closed_mouth(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     V : (n, 3) float64, mm
     """
     motion, drawn = _closing(model, V), crossing_count(model, V)
-    fewest, best = len(model.faces), V
+    harm, best = (np.inf, np.inf), V
     for share in _SHARES:
         closed = V + share * motion
         crossings = crossing_count(model, closed)
         if drawn < crossings <= drawn + _FEW:
             closed = uncrossed(model, closed)
             crossings = crossing_count(model, closed)
-        if crossings < fewest:
-            fewest, best = crossings, closed
-        if crossings <= drawn and strain(model, V, closed) < _STRAIN:
+        here = max(crossings - drawn, 0), max(strain(model, V, closed) - _STRAIN, 0.0)
+        if here < harm:
+            harm, best = here, closed
+        if here == (0, 0.0):
             return closed
     return uncrossed(model, best)
 
@@ -66,20 +68,25 @@ def closed_mouth(model: MorphableModel, V: np.ndarray) -> np.ndarray:
 def _closing(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     """Displacements (n, 3) that close the mouth wholly."""
     line = lip_line(model)
+    jaw = model.expression[model.expression_index("jawOpen")].astype(float)
     nose, upper, lower, tip = V[model.landmarks[[33, 62, 66, 8]]]
     to_upper, to_lower = contact_line(line, V, _up(line, V), float(np.linalg.norm(nose - upper)))
     middle = to_lower[np.abs(np.linspace(0, 1, len(to_lower)) - 0.5).argmin()]
     way = float(np.linalg.norm(middle))
-    follows = max(0.0, way - _STRETCH * float(np.linalg.norm(lower - tip))) * middle / max(way, 1e-9)
+    follows = max(0.0, way - _STRETCH * float(np.linalg.norm(lower - tip)))
+    # The chin goes up as it hangs on the template, so far that the lip goes that way.
+    lip = jaw[model.landmarks[66]]
+    along = -float(lip @ middle) / max(way, 1e-9)
+    swing = -follows / max(along, _ALONG * float(np.linalg.norm(lip))) * jaw
     D = np.zeros(V.shape)
     D[line.upper], D[line.lower[1:-1]] = to_upper, to_lower[1:-1]
-    _bend(model, V, line, follows, D)
+    _bend(model, V, line, swing, D)
     for part in ("teeth_lower", "tongue"):
-        D[model.region(part)] = follows
+        D[model.region(part)] = swing[model.region(part)]
     return D
 
 
-def _bend(model: MorphableModel, V: np.ndarray, line: LipLine, follows: np.ndarray, D: np.ndarray) -> None:
+def _bend(model: MorphableModel, V: np.ndarray, line: LipLine, swing: np.ndarray, D: np.ndarray) -> None:
     """Let the skin follow the displacements of the line, in place."""
     soft = model.region("skin") | model.region("mouth_cavity") | model.region("neck")
     used, local = np.unique(model.faces[soft[model.faces].all(1)], return_inverse=True)
@@ -91,7 +98,7 @@ def _bend(model: MorphableModel, V: np.ndarray, line: LipLine, follows: np.ndarr
     plate = sp.csr_matrix(K @ sp.diags_array(1 / mass) @ K + _TENSION * K)
     known = np.any([model.region(name) for name in _HELD], axis=0)
     known[still_vertices(model)] = known[line.vertices] = True
-    want, pull = _tubes_and_chin(model, line, follows, D, known)
+    want, pull = _tubes_and_chin(model, line, swing, D, known)
     free, given = np.flatnonzero(~known[used]), np.flatnonzero(known[used])
     spring = (pull[used] * mass * np.median(plate.diagonal() / mass) * 1e-2)[free]
     right = spring[:, None] * want[used[free]] - plate[free][:, given] @ D[used[given]]
@@ -99,7 +106,7 @@ def _bend(model: MorphableModel, V: np.ndarray, line: LipLine, follows: np.ndarr
 
 
 def _tubes_and_chin(
-    model: MorphableModel, line: LipLine, follows: np.ndarray, D: np.ndarray, known: np.ndarray
+    model: MorphableModel, line: LipLine, swing: np.ndarray, D: np.ndarray, known: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Displacements (n, 3) that lips and chin should have, and how strongly (n,)."""
     want, pull = np.zeros_like(D), np.zeros(len(D))
@@ -110,7 +117,7 @@ def _tubes_and_chin(
     motion = np.linalg.norm(model.expression[model.expression_index("jawOpen")], axis=1)
     below = model.mean[:, 1] < model.mean[model.landmarks[57], 1] - _BELOW_LIP_MM
     chin = model.region("skin") & below & (motion > _CHIN_SHARE * motion[model.landmarks[8]]) & ~known
-    want[chin], pull[chin] = follows, _CHIN
+    want[chin], pull[chin] = swing[chin], _CHIN
     return want, pull
 
 

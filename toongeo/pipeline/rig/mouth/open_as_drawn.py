@@ -23,7 +23,7 @@ _SMILING = ("mouthSmile", "mouthDimple", "mouthStretch", "mouthPress")
 _LEFT = 0.35  # of these expressions at least
 _FLOOR = 0.35  # weight that the opening expressions have at least in the pose of a mouth that is drawn well open
 _OPEN = 0.33  # of the gap of `jawOpen`: with a mouth as open as this, or more, they have it
-_ABLE = 0.02  # sum of squared weights below which no more is asked of those that move a vertex: of 0.14 and less
+_ABLE = 0.1  # sum of squared weights below which less is asked: at 1, an expression shows up to thrice of it
 
 
 def open_as_drawn(face: AlignedFace, rig: Rig, drawn: np.ndarray) -> Rig:
@@ -59,7 +59,8 @@ def open_as_drawn(face: AlignedFace, rig: Rig, drawn: np.ndarray) -> Rig:
     weights = fit_pose(openers, drawn, face.region("skin"))
     jaw = rig.neutral + deltas[rig.names.index("jawOpen")]
     opened = lips_apart(model, drawn) / max(lips_apart(model, jaw), 1e-9)
-    weights = np.maximum(weights, _FLOOR * min(1.0, opened / _OPEN))
+    lips = np.array([name != "jawOpen" for name in names])  # more of the jaw than there is would be taken from it again
+    weights = np.maximum(weights, lips * _FLOOR * min(1.0, opened / _OPEN))
     lack = drawn - rig.neutral - np.tensordot(weights, openers.deltas.astype(np.float64), 1)
     lack[~(face.region("skin") | face.region("mouth_cavity"))] = 0
     able = weights[:, None] * _leads(model, names)

@@ -1,0 +1,63 @@
+"""Tests of the hair that labels show where no mask of it is trusted."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from toongeo.pipeline.parse.doubtful_hair import doubtful_hair
+
+DARK, RED = (30, 20, 20), (200, 20, 20)
+
+
+@pytest.fixture
+def scene():
+    """A head of 100 px with a dark cap of hair, a strand beside the neck, and a coat of two colours, one the hair's."""
+    y, x = np.mgrid[:240, :200]
+    skull = ((x - 100) / 40) ** 2 + ((y - 90) / 50) ** 2 < 1
+    hull = skull & (y > 70)
+    cap = (((x - 100) / 50) ** 2 + ((y - 90) / 60) ** 2 < 1) & ~hull & (y < 150)
+    strand = (x > 140) & (x < 150) & (y >= 95) & (y < 150)
+    red, coat = (y > 175) & (x < 100), (y > 175) & (x >= 100)
+    pixels = np.full((240, 200, 3), 230, np.uint8)
+    pixels[cap | strand | coat] = DARK
+    pixels[red] = RED
+    return SimpleNamespace(
+        view=SimpleNamespace(pixels=pixels, head=100.0),
+        zones=SimpleNamespace(below_chin=y > 140, hull=hull, silhouette=skull),
+        cut=SimpleNamespace(head=hull | cap | strand | red | coat, skin=hull),
+        cap=cap,
+        strand=strand,
+        clothes=red | coat,
+        nothing=np.zeros_like(cap),
+    )
+
+
+def found(scene, mask):
+    return doubtful_hair(scene.view, scene.zones, scene.cut, mask)
+
+
+def test_without_a_mask_hair_hangs_and_clothes_do_not(scene):
+    hair = found(scene, scene.nothing)
+    assert (hair & scene.cap).sum() > 0.95 * scene.cap.sum()
+    assert (hair & scene.strand).sum() > 0.9 * scene.strand.sum()
+    assert not (hair & scene.clothes).any()
+
+
+def test_without_a_head_there_is_no_hair(scene):
+    scene.cut.head = scene.nothing
+    assert not found(scene, scene.nothing).any()
+
+
+def test_a_mask_loses_what_is_skin_and_what_is_ground(scene):
+    skin, ground = scene.nothing.copy(), scene.nothing.copy()
+    skin[80:100, 90:110] = True
+    ground[:20, :40] = True
+    np.testing.assert_array_equal(found(scene, scene.cap | skin | ground), scene.cap)
+
+
+def test_cuts_that_would_take_most_of_the_mask_are_not_followed(scene):
+    scene.cut.skin = scene.cut.head
+    np.testing.assert_array_equal(found(scene, scene.cap), scene.cap)
+    scene.cut.skin, scene.cut.head = scene.nothing, scene.zones.hull
+    np.testing.assert_array_equal(found(scene, scene.cap), scene.cap)
