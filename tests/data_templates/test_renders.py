@@ -1,4 +1,4 @@
-"""The renderer of training pictures, and the training of the detector on a few of them."""
+"""The renderer of training pictures."""
 
 import sys
 from pathlib import Path
@@ -73,13 +73,3 @@ def test_a_warp_moves_landmarks_with_the_picture():
     for source, axis in ((seen_x, 0), (seen_y, 1)):
         rows = np.rint(moved[inside]).astype(int)
         np.testing.assert_allclose(source[rows[:, 1], rows[:, 0]], landmarks[inside, axis], atol=1.7)
-
-
-def test_samples_do_not_depend_on_how_they_are_shared_out(monkeypatch):
-    from detector import samples
-
-    one = samples.rendered_samples(7, 2, 1)
-    monkeypatch.setattr(samples, "_CHUNK", 1)
-    two = samples.rendered_samples(7, 2, 1)
-    assert one.grey.tobytes() == two.grey.tobytes() and one.grey.shape == (4, 256, 256)
-    np.testing.assert_array_equal(one.landmarks, two.landmarks)

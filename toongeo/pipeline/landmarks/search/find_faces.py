@@ -24,7 +24,7 @@ _KEPT = 4  # boxes that the whole cascade is run on, at least
 _PLAIN = 0.5  # the sum of the first scores at which others are looked at too: there may be many faces
 # Chances of a face: the least one, and that beside a sure face. Chosen on renders and on photographs without a face.
 _FACE, _SURE, _BESIDE = 0.8, 0.9, 0.9
-_PLACED = 0.35  # mean confidence of inner points below which it is no face: of drawn renders, points with less were off the face
+_PLACED = 0.35  # mean confidence of inner points; of drawn renders, points with less were off the face
 _OVERLAP = 0.7  # radii between the middles of faces that cannot both be
 _SAME = 0.15  # radii between the points of what would end as one face
 
