@@ -29,6 +29,8 @@ from tests.filmed import Film, filmed
 from toongeo import (
     LandmarkDriver,
     LandmarkTracker,
+    LiveVideo,
+    VideoDriver,
     detect_faces,
     make_avatar,
     read_image,
@@ -62,30 +64,57 @@ def main() -> None:
             avatar = make_avatar(read_image(picture.image), read_landmarks(picture.landmarks))
             acting, still = filmed(avatar), filmed(avatar, 2.0, still=True, hidden=None)
             moving = moves_landmarks(avatar)
-            for who in (followed, followed_live, looked_at_singly):
+            for who in (video_driver, live_video, followed, followed_live, looked_at_singly):
                 print(row(picture.name, who, acting, still, moving), flush=True)
     print(roles("tracking", names))
 
 
-def followed(film: Film) -> np.ndarray:
-    return track_landmarks(film.frames, fps=film.fps).seen
+Seen = tuple[np.ndarray, np.ndarray]  # points (f, 68, 2) px, NaN where lost, and weights (f, 46)
 
 
-def followed_live(film: Film) -> np.ndarray:
+def video_driver(film: Film) -> Seen:
+    return track_landmarks(film.frames, fps=film.fps).seen, VideoDriver().frames(film.frames, film.fps)[:, :46]
+
+
+def live_video(film: Film) -> Seen:
+    """After a moment at rest: the frame of least expression, noisy."""
+    at_rest = int(np.argmin(film.weights.sum(axis=1) + film.hidden * 1e3))
+    rng, live, rows = np.random.default_rng(1), LiveVideo(), []
+    frames = [film.frames[at_rest]] * 8
+    frames = [np.clip(frame + rng.normal(0, 4, frame.shape), 0, 255).astype(np.uint8) for frame in frames]
+    for k, frame in enumerate([*frames, *film.frames]):
+        rows.append(live(frame, k / film.fps)[:46])
+    return live_points(film), np.array(rows[len(frames) :])
+
+
+def live_points(film: Film) -> np.ndarray:
     """As a camera needs it: quick passes."""
     tracker = LandmarkTracker()
     faces = [tracker.track(frame, k / film.fps) for k, frame in enumerate(film.frames)]
     return np.array([np.full((68, 2), np.nan) if face.lost else face.points for face in faces])
 
 
-def looked_at_singly(film: Film) -> np.ndarray:
+def followed(film: Film) -> Seen:
+    return by_landmarks(track_landmarks(film.frames, fps=film.fps).seen, film)
+
+
+def followed_live(film: Film) -> Seen:
+    return by_landmarks(live_points(film), film)
+
+
+def looked_at_singly(film: Film) -> Seen:
     found = [detect_faces(frame) for frame in film.frames]
-    return np.array([faces[0].points if faces else np.full((68, 2), np.nan) for faces in found])
+    points = [faces[0].points if faces else np.full((68, 2), np.nan) for faces in found]
+    return by_landmarks(np.array(points), film)
+
+
+def by_landmarks(points: np.ndarray, film: Film) -> Seen:
+    return points, LandmarkDriver(caution=CAUTION).frames(points, film.fps)[:, :46]
 
 
 def row(name: str, who, acting: Film, still: Film, moving: np.ndarray) -> str:
     started = time.process_time()
-    points = who(acting)
+    points, weights = who(acting)
     ms = (time.process_time() - started) / len(points) * 1e3
     lost, seen = np.isnan(points).any(axis=(1, 2)), ~acting.hidden
     error = np.mean(
@@ -96,9 +125,9 @@ def row(name: str, who, acting: Film, still: Film, moving: np.ndarray) -> str:
     )
     back = np.flatnonzero(acting.hidden)[-1] + 1
     wait = float(np.argmax(~lost[back:])) / acting.fps
-    wrong = (LandmarkDriver(caution=CAUTION).frames(points, acting.fps)[:, :46] - acting.weights)[seen]
+    wrong = (weights - acting.weights)[seen]
     acted = acting.weights.any(axis=0)
-    quiet = LandmarkDriver(caution=CAUTION).frames(who(still), still.fps).std(axis=0).max()
+    quiet = who(still)[1].std(axis=0).max()
     cells = (
         name,
         who.__name__.replace("_", " "),

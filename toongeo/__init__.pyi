@@ -20,6 +20,7 @@ from toongeo.caricature import optimize_blendshapes as optimize_blendshapes
 from toongeo.caricature import weights_of_expression as weights_of_expression
 from toongeo.driving import ArkitDriver as ArkitDriver
 from toongeo.driving import LandmarkDriver as LandmarkDriver
+from toongeo.driving import LiveVideo as LiveVideo
 from toongeo.driving import Take as Take
 from toongeo.driving import VideoDriver as VideoDriver
 from toongeo.driving import send_weights as send_weights

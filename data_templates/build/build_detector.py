@@ -1,8 +1,9 @@
 """Rebuild the landmark detector, data_templates/landmark_detector.npz, from renders of the default template.
 
-usage: python data_templates/build/build_detector.py [--heads N] [--processes K] [-o FILE]
+usage: python data_templates/build/build_detector.py [--heads N] [--processes K] [--cache FOLDER] [--small] [-o FILE]
 
-The same machine gives the same bytes, whatever the number of processes.
+The same machine gives the same bytes, whatever the number of processes. What is finished is kept in the cache, if one
+is named, and a run that was stopped goes on from there.
 """
 
 from __future__ import annotations
@@ -10,12 +11,14 @@ from __future__ import annotations
 import argparse
 import os
 import time
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from detector.clutter import CALIBRATION, CLUTTER, clutter_pictures
-from detector.samples import Samples, rendered_samples
+from detector.samples import first_samples, joined_samples, rendered_samples
+from detector.strange_samples import strange_samples
 from detector.train_boxes import train_boxes
 from detector.train_cascade import train_cascade
 from detector.train_judge import train_judge
@@ -24,47 +27,109 @@ from detector.train_verifier import train_verifier
 from threadpoolctl import threadpool_limits
 
 from toongeo.model.ibug68 import PARTS
-from toongeo.pipeline.landmarks.search.detector_file import DetectorParts, detector_arrays
-from toongeo.pipeline.landmarks.search.face_judge import FaceJudge
+from toongeo.pipeline.landmarks.search.cascade import Cascade
+from toongeo.pipeline.landmarks.search.detector_file import DetectorParts, detector_arrays, read_detector
+from toongeo.pipeline.landmarks.search.face_boxes import BoxTemplates
+from toongeo.pipeline.landmarks.search.face_judge import FACE_CUES, POINT_CUES, FaceJudge
+from toongeo.pipeline.landmarks.search.face_verifier import FaceVerifier
 
-_HEADS, _HELD_OUT = 2250, 250
-_BOX_HEADS, _VERIFIER_HEADS, _JUDGE_HEADS = 1200, 1000, 100
-_PROCEDURAL = 40  # pictures of clutter
-_UNTRAINED = FaceJudge(np.zeros(5), np.zeros((len(PARTS), 6)))
+_NOTHING = np.zeros((0, 0), np.float32)
+_UNTRAINED = DetectorParts(
+    BoxTemplates(_NOTHING, _NOTHING),
+    Cascade(np.zeros((68, 2)), _NOTHING, ()),
+    FaceVerifier(_NOTHING, _NOTHING),
+    FaceJudge(np.zeros(FACE_CUES), np.zeros((len(PARTS), POINT_CUES))),
+)
+
+
+@dataclass(frozen=True)
+class _Size:
+    """How many heads, two pictures each, are rendered or taken for what, and how many pictures of procedural clutter
+    for training and, `fresh`, for the judge."""
+
+    heads: int = 2250
+    drawn: int = 1900
+    held_out: int = 250
+    boxes: int = 1200
+    verifier: int = 1000
+    judge: int = 60
+    clutter: int = 40
+    fresh: int = 10
+
+
+_SMALL = _Size(60, 40, 10, 40, 40, 10, 2, 2)
 
 
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--heads", type=int, default=_HEADS, help="heads to render, two pictures each")
+    parser.add_argument("--heads", type=int, help=f"heads to render, two pictures each ({_Size.heads})")
     parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--cache", type=Path, help="folder of what is finished")
+    parser.add_argument("--small", action="store_true", help="a toy from 60 heads, to try the script")
     parser.add_argument("-o", "--output", type=Path, default=Path(__file__).parents[1] / "landmark_detector.npz")
     arguments = parser.parse_args()
+    size = _SMALL if arguments.small else _Size()
+    size = replace(size, heads=arguments.heads or size.heads)
+    if arguments.cache is not None:
+        arguments.cache.mkdir(parents=True, exist_ok=True)
     start = time.perf_counter()
 
     def say(text: str, **options) -> None:
         print(f"{time.perf_counter() - start:6.0f} s  {text}", **options)
 
     with threadpool_limits(1):  # sums must not depend on the number of threads
-        samples = rendered_samples(1, arguments.heads, arguments.processes)
-        held_out = rendered_samples(2, _HELD_OUT, arguments.processes)
-        say(f"{len(samples.grey)} renders", flush=True)
-        parts = trained_parts(samples, held_out, arguments.processes, say)
+        parts = trained_parts(size, arguments.processes, arguments.cache, say)
     _write(arguments.output, detector_arrays(parts))
     say(f"wrote {arguments.output}, {arguments.output.stat().st_size / 1e6:.1f} MB")
 
 
-def trained_parts(samples: Samples, held_out: Samples, processes: int, say) -> DetectorParts:
-    """Every part of the detector; `held_out` calibrates and chooses, and is not trained on."""
-    clutter = clutter_pictures(np.random.default_rng(3), CLUTTER, _PROCEDURAL)
-    boxes = train_boxes(_first(samples, 2 * _BOX_HEADS), clutter, say=say)
-    cascade = train_cascade(samples, held_out, processes, say=say)
-    cascade = replace(cascade, parts=train_parts(samples, held_out, cascade, processes, say=say))
-    verifier = train_verifier(_first(samples, 2 * _VERIFIER_HEADS), boxes, cascade, clutter, processes, say=say)
-    parts = DetectorParts(boxes, cascade, verifier, _UNTRAINED)
-    fresh = clutter_pictures(np.random.default_rng(4), CALIBRATION, _PROCEDURAL)
-    judge = train_judge(_first(held_out, 2 * _JUDGE_HEADS), parts, fresh, processes, say=say)
-    return DetectorParts(boxes, cascade, verifier, judge)
+def trained_parts(size: _Size, processes: int, cache: Path | None, say) -> DetectorParts:
+    """Every part of the detector; held-out renders choose and calibrate, and are not trained on.
+
+    The cascade of the whole face learns from the usual renders; what it leaves, most of it on drawings, the parts learn
+    from those and from drawn ones.
+    """
+    usual = rendered_samples(1, size.heads, "usual", processes, cache)
+    drawn = rendered_samples(1, size.drawn, "drawn", processes, cache)
+    held_out = rendered_samples(2, size.held_out, "usual", processes, cache)
+    held_drawn = rendered_samples(2, size.held_out, "every", processes, cache)
+    say(f"{len(usual.grey)} usual renders, {len(drawn.grey)} drawn ones", flush=True)
+    clutter = clutter_pictures(np.random.default_rng(3), CLUTTER, size.clutter)
+
+    def boxes():
+        return replace(_UNTRAINED, boxes=train_boxes(first_samples(usual, 2 * size.boxes), clutter, say=say))
+
+    def cascade():
+        return replace(parts, cascade=train_cascade(usual, held_out, processes, say=say))
+
+    def verifier():
+        some = first_samples(usual, 2 * size.verifier)
+        return replace(parts, verifier=train_verifier(some, parts.boxes, parts.cascade, clutter, processes, say=say))
+
+    def refined():
+        every = joined_samples((usual, drawn))
+        trained = train_parts(every, held_drawn, parts.cascade, processes, say=say)
+        return replace(parts, cascade=replace(parts.cascade, parts=trained))
+
+    parts = _kept(cache, "boxes", boxes)
+    parts = _kept(cache, "cascade", cascade)
+    parts = _kept(cache, "verifier", verifier)
+    parts = _kept(cache, "parts", refined)
+    fresh = clutter_pictures(np.random.default_rng(4), CALIBRATION, size.fresh)
+    strange = strange_samples(first_samples(held_drawn, 2 * size.judge), seed=5)
+    return replace(parts, judge=train_judge(strange, parts, fresh, processes, say=say))
+
+
+def _kept(cache: Path | None, name: str, train: Callable[[], DetectorParts]) -> DetectorParts:
+    """What was trained up to a step, read from the cache if it is there."""
+    path = None if cache is None else cache / f"{name}.npz"
+    if path is not None and path.exists():
+        return read_detector(path)
+    parts = train()
+    if path is not None:
+        _write(path, detector_arrays(parts))
+    return parts
 
 
 def _write(path: Path, arrays: dict[str, np.ndarray]) -> None:
@@ -72,10 +137,6 @@ def _write(path: Path, arrays: dict[str, np.ndarray]) -> None:
     temporary = path.with_name(f".{path.stem}.tmp.npz")
     np.savez_compressed(temporary, **arrays)
     os.replace(temporary, path)
-
-
-def _first(samples: Samples, count: int) -> Samples:
-    return Samples(samples.grey[:count], samples.landmarks[:count], samples.kinds[:count], samples.yaw[:count])
 
 
 if __name__ == "__main__":

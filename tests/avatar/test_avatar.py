@@ -96,7 +96,8 @@ def test_the_picture_comes_back_when_rendered_from_its_own_camera(avatar, cartoo
     cv2.fillConvexPoly(hull, cv2.convexHull(np.round(landmarks).astype(np.int32)), 1)
     inner = cv2.erode(hull, np.ones((9, 9), np.uint8)).astype(bool)
     difference = np.abs(rendered.astype(float) - img)[inner].mean()
-    assert difference < 9
+    # 8.2 if lashes kept the strip on which they stand; but a blink would spread them over the whole eye.
+    assert difference < 10
 
 
 def test_a_second_run_is_bit_identical(avatar, glb, cartoon, tmp_path):

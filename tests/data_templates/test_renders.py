@@ -1,4 +1,4 @@
-"""The renderer of training pictures, and the training of the detector on a few of them."""
+"""The renderer of training pictures."""
 
 import sys
 from pathlib import Path
@@ -73,29 +73,3 @@ def test_a_warp_moves_landmarks_with_the_picture():
     for source, axis in ((seen_x, 0), (seen_y, 1)):
         rows = np.rint(moved[inside]).astype(int)
         np.testing.assert_allclose(source[rows[:, 1], rows[:, 0]], landmarks[inside, axis], atol=1.7)
-
-
-def test_samples_do_not_depend_on_how_they_are_shared_out(monkeypatch):
-    from detector import samples
-
-    one = samples.rendered_samples(7, 2, 1)
-    monkeypatch.setattr(samples, "_CHUNK", 1)
-    two = samples.rendered_samples(7, 2, 1)
-    assert one.grey.tobytes() == two.grey.tobytes() and one.grey.shape == (4, 256, 256)
-    np.testing.assert_array_equal(one.landmarks, two.landmarks)
-
-
-def test_a_small_cascade_learns_and_is_the_same_twice(monkeypatch):
-    from detector import linear, train_cascade
-    from detector.samples import rendered_samples
-
-    from toongeo.model.ibug68 import MIRROR
-
-    monkeypatch.setattr(linear, "_RIDGES", (0.1,))
-    monkeypatch.setattr(train_cascade, "STAGES", train_cascade.STAGES[:1])
-    few, said = rendered_samples(8, 10, 1), []
-    one, two = (train_cascade.train_cascade(few, few, 1, say=lambda text, **k: said.append(text)) for _ in range(2))
-    assert float(said[0].split()[-1]) < 0.1  # the mean shape has 0.2 and more
-    for a, b in zip(one.stages, two.stages, strict=True):
-        assert a.weights.tobytes() == b.weights.tobytes() and a.axes.tobytes() == b.axes.tobytes()
-    np.testing.assert_allclose((one.shape - 80)[MIRROR] * [-1, 1], one.shape - 80, atol=1e-6)

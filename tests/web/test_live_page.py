@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 from toongeo.driving import send_weights
+from toongeo.io import read_video
 
 pytest.importorskip("websockets", reason="needs the extra `serve`")
 
 from tests.app.running import running
+from toongeo.app.write_video import write_video
 
 LIVE = {"wait": "document.getElementById('status').textContent.startsWith('Live')"}
 MESSAGES = 1000
@@ -50,6 +52,21 @@ def test_a_thousand_messages_are_applied(avatar, browse, tmp_path):
     assert fetched == "refused"  # by the page's own policy
     assert all(url.startswith((origin, "blob:", "ws://127.0.0.1:")) for url in report["requests"])
     assert [line for line in report["console"] if "Content Security Policy" not in line and "Fetch" not in line] == []
+
+
+@pytest.mark.slow
+def test_the_face_before_a_camera_moves_the_page(avatar, performance, browse, tmp_path):
+    """A film stands in for the camera: its actor rests, then the mouth is open. It waits for whoever is slow."""
+    path, film = tmp_path / "face.glb", tmp_path / "camera.mp4"
+    write_video(film, [performance.frames[k] for k in [2] * 8 + [6] * 6], 240, 10)
+    camera = ((frame, k / 10) for k, frame in enumerate(read_video(film)))
+    avatar.save(path, loadable=False, quantize=True, animation=None)
+    with running(path, camera=camera) as server:
+        steps = [LIVE, {"wait": "toongeo.weights().jawOpen > 0.3"}, {"run": "toongeo.weights()"}]
+        report, _ = browse(server.url, steps)
+    (weights,) = report["results"]
+    assert weights["jawOpen"] > 0.3 and all(0 <= weight <= 1 for weight in weights.values())
+    assert report["console"] == []
 
 
 def server_has_page(server):

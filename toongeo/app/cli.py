@@ -136,7 +136,9 @@ def _add_drive(commands: Any) -> None:
 def _add_serve(commands: Any) -> None:
     serve = commands.add_parser("serve", help="show an avatar that moves while weights come, on this computer only")
     serve.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb")
-    serve.add_argument("--weights", type=Path, metavar="TAKE", help="play this take: .csv or .npy as for drive")
+    source = serve.add_mutually_exclusive_group()
+    source.add_argument("--weights", type=Path, metavar="TAKE", help="play this take: .csv or .npy as for drive")
+    source.add_argument("--camera", metavar="N", help="follow the face before this camera, 0 for the first; or a film")
     serve.add_argument("--loop", action="store_true", help="play it again and again")
     serve.add_argument("--port", type=int, default=0, metavar="N", help="default: a free one")
     serve.add_argument("--no-open", action="store_true", help="only print the addresses")
@@ -222,7 +224,14 @@ def _drive(options: argparse.Namespace) -> None:
 def _serve(options: argparse.Namespace) -> None:
     from toongeo.app.live.serve import serve
 
-    serve(options.avatar, weights=options.weights, port=options.port, loop=options.loop, show=not options.no_open)
+    serve(
+        options.avatar,
+        weights=options.weights,
+        camera=options.camera,
+        port=options.port,
+        loop=options.loop,
+        show=not options.no_open,
+    )
 
 
 def _view(options: argparse.Namespace) -> None:

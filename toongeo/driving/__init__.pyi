@@ -4,6 +4,7 @@ from toongeo.driving.arkit_driver import ArkitDriver as ArkitDriver
 from toongeo.driving.landmark_driver import LandmarkDriver as LandmarkDriver
 from toongeo.driving.landmark_driver import LiveLandmarks as LiveLandmarks
 from toongeo.driving.landmark_rig import LandmarkRig as LandmarkRig
+from toongeo.driving.live_video import LiveVideo as LiveVideo
 from toongeo.driving.puppet.scene_puppet import ScenePuppet as ScenePuppet
 from toongeo.driving.puppet.target_columns import target_columns as target_columns
 from toongeo.driving.read_live_link import read_live_link as read_live_link

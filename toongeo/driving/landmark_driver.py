@@ -16,7 +16,7 @@ from toongeo.driving.landmark_frames import landmark_frames
 from toongeo.driving.landmark_noise import FIRST_NOISE, doubt_of, noise_of
 from toongeo.driving.landmark_pose import FEWEST, landmark_pose, landmark_poses
 from toongeo.driving.landmark_rig import LandmarkRig
-from toongeo.driving.one_euro_filter import OneEuroFilter
+from toongeo.driving.one_euro_filter import OneEuroFilter, smoothed_both_ways
 from toongeo.driving.performer_of_frames import performer_of_frames
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.expression_schemes import EXPRESSIONS
@@ -113,12 +113,12 @@ class LandmarkDriver:
             errors = np.array([pose.errors(x, rig) for pose, x in zip(poses, sequence, strict=True)])
             noise, doubt = noise_of(errors), doubt_of(errors, self._caution)
             moved = np.array([pose.head_frame(x, rig) for pose, x in zip(poses, sequence, strict=True)])
-            moved = _smoothed(moved, noise * rig.width, fps)
+            moved = smoothed_both_ways(moved, noise * rig.width, fps)
             weights, rows = np.zeros(len(rig.names)), []
             for pose, there in zip(poses, moved, strict=True):
                 weights = landmark_pose(rig, pose.picture(there, rig), weights, doubt).weights
                 rows.append(weights)
-        return _all_weights(np.array(rows), rig.names)
+        return rig.all_weights(np.array(rows))
 
     def live(self) -> LiveLandmarks:
         """For frames that come one by one.
@@ -165,23 +165,4 @@ class LiveLandmarks:
                 there = self._filter(pose.head_frame(pixels, rig), time)
                 smooth = landmark_pose(rig, pose.picture(there, rig), self._weights[1], self._caution * noise)
             self._weights = [pose.weights, smooth.weights]
-        return _all_weights(self._weights[1][None], rig.names)[0]
-
-
-def _smoothed(moved: Floats, noise: float, fps: float) -> Floats:
-    """The mean of a filter that runs forwards and one that runs backwards; each begins where the other ended."""
-
-    def run(points: Floats, start: Floats | None) -> Floats:
-        smooth = OneEuroFilter(noise, start=start)
-        return np.array([smooth(there, i / fps) for i, there in enumerate(points)])
-
-    forwards = run(moved, None)
-    backwards = run(moved[::-1], forwards[-1])[::-1]
-    return (run(moved, backwards[0]) + backwards) / 2
-
-
-def _all_weights(weights: Floats, names: tuple[str, ...]) -> Floats:
-    """Weights (f, k) of a rig's expressions as (f, 54) of EXPRESSIONS."""
-    rows = np.zeros((len(weights), len(EXPRESSIONS)))
-    rows[:, [EXPRESSIONS.index(name) for name in names]] = weights
-    return rows
+        return rig.all_weights(self._weights[1][None])[0]

@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
-from toongeo.pipeline import Rig, align_face, build_rig, fit_3dmm, fit_3dmm_together, fit_lids
+from toongeo.model.expression_schemes import EXPRESSIONS
+from toongeo.pipeline import AlignedFace, Rig, align_face, build_rig, fit_3dmm, fit_3dmm_together, fit_lids
 
-__all__ = ["LandmarkRig"]
+__all__ = ["LandmarkRig", "PerformerFace"]
 
 _SEVERAL = 6  # frames that a performer's face is found from when none is known to be neutral
 
@@ -47,6 +48,12 @@ class LandmarkRig:
         """Of the face from ear to ear, mm: the unit in which errors of landmarks are told."""
         return float(np.ptp(self.neutral[:, 0]))
 
+    def all_weights(self, weights: Floats) -> Floats:
+        """Weights (f, k) of its expressions as (f, 54) of ``EXPRESSIONS``, 0 for those that it has not."""
+        rows = np.zeros((len(weights), len(EXPRESSIONS)))
+        rows[:, [EXPRESSIONS.index(name) for name in self.names]] = weights
+        return rows
+
     @classmethod
     def of_rig(cls, rig: Rig, vertices: NDArray[np.integer]) -> LandmarkRig:
         """Of a rigged face whose landmarks lie at vertices (68,)."""
@@ -58,9 +65,7 @@ class LandmarkRig:
 
         The frame is fitted and aligned as a picture would be, and the expressions of the template are transferred.
         """
-        fit = fit_3dmm(None, landmarks)
-        face = align_face(fit, np.asarray(landmarks, np.float64))
-        return cls.of_rig(fit_lids(face, build_rig(face))[0], face.landmark_vertices)
+        return PerformerFace.of_neutral(landmarks).landmarks
 
     @classmethod
     def of_frames(cls, frames: ArrayLike) -> LandmarkRig:
@@ -80,3 +85,28 @@ class LandmarkRig:
             model.vertices(fit.identity)[vertices],
             model.expression[:n, vertices].astype(np.float64),
         )
+
+
+@dataclass(frozen=True, eq=False)
+class PerformerFace:
+    """The whole face of a performer.
+
+    Attributes
+    ----------
+    aligned : AlignedFace
+    rig : Rig
+        Its ``neutral`` is the face at rest.
+    landmarks : LandmarkRig
+        Of the same.
+    """
+
+    aligned: AlignedFace
+    rig: Rig
+    landmarks: LandmarkRig
+
+    @classmethod
+    def of_neutral(cls, landmarks: ArrayLike) -> PerformerFace:
+        """As :meth:`LandmarkRig.of_neutral`."""
+        face = align_face(fit_3dmm(None, landmarks), np.asarray(landmarks, np.float64))
+        rig = fit_lids(face, build_rig(face))[0]
+        return cls(face, rig, LandmarkRig.of_rig(rig, face.landmark_vertices))

@@ -6,7 +6,7 @@ import numpy as np
 
 from toongeo.arrays import Floats
 
-__all__ = ["OneEuroFilter"]
+__all__ = ["OneEuroFilter", "smoothed_both_ways"]
 
 
 class OneEuroFilter:
@@ -88,6 +88,19 @@ class OneEuroFilter:
             share = np.maximum(share, 1.0 / (self._count + 1))
         self._value = value + share[:, None] * (seen - value)
         self._raw = np.where(np.isnan(points), raw, points)
+
+
+def smoothed_both_ways(points: Floats, noise: float, fps: float) -> Floats:
+    """Points (f, k, d) of a whole sequence without delay: the mean of a filter that runs forwards and one that runs
+    backwards; each begins where the other ended."""
+
+    def run(points: Floats, start: Floats | None) -> Floats:
+        smooth = OneEuroFilter(noise, start=start)
+        return np.array([smooth(there, i / fps) for i, there in enumerate(points)])
+
+    forwards = run(points, None)
+    backwards = run(points[::-1], forwards[-1])[::-1]
+    return (run(points, backwards[0]) + backwards) / 2
 
 
 def _share(cutoff: np.ndarray | float, step: float) -> np.ndarray:

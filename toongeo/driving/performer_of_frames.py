@@ -7,7 +7,7 @@ from toongeo.driving.landmark_noise import FIRST_NOISE, doubt_of
 from toongeo.driving.landmark_pose import landmark_poses
 from toongeo.driving.landmark_rig import LandmarkRig
 
-__all__ = ["performer_of_frames"]
+__all__ = ["neutral_landmarks", "performer_of_frames"]
 
 # Chosen on films of two examples (astronaut, moustache_man).
 _CAUTION = 2.0  # for the first weights, of a face that is not quite known yet
@@ -18,9 +18,22 @@ _FRAMES = 5  # that the neutral frame is the median of
 def performer_of_frames(sequence: Floats) -> LandmarkRig:
     """The landmarks of a performer who is only known from a sequence (f, 68, 2) px, NaN where missing.
 
+    A face is aligned to :func:`neutral_landmarks`.
+
+    Raises
+    ------
+    ValueError
+        If no frame has enough landmarks.
+    """
+    return LandmarkRig.of_neutral(neutral_landmarks(sequence)[0])
+
+
+def neutral_landmarks(sequence: Floats) -> tuple[Floats, int]:
+    """The landmarks (68, 2) px of a neutral face, and the frame in which it is seen so.
+
     A face with one identity and an expression a frame is fitted to a few frames; of the frames with the least
-    expression by that face, seen most from the front, the median is taken for neutral, and a face aligned to it. What
-    a detector always puts in a wrong place becomes part of the face then, rather than of its expressions.
+    expression by that face, seen most from the front, the median is taken for neutral. What a detector always puts in
+    a wrong place becomes part of the face then, rather than of its expressions.
 
     Raises
     ------
@@ -38,4 +51,4 @@ def performer_of_frames(sequence: Floats) -> LandmarkRig:
     order = np.argsort(expressed, kind="stable")[:_FRAMES]
     alike = [i for i in order if np.isfinite(expressed[i]) and (there[i] == there[order[0]]).all()]
     median = np.median([poses[i].head_frame(sequence[i], rig) for i in alike], axis=0)
-    return LandmarkRig.of_neutral(poses[order[0]].picture(median, rig))
+    return poses[order[0]].picture(median, rig), int(order[0])

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from toongeo.arrays import Bytes, Floats
 from toongeo.avatar.avatar import Avatar
 from toongeo.driving.landmark_driver import LandmarkDriver
 from toongeo.driving.landmark_rig import LandmarkRig
-from toongeo.driving.performer_of_frames import performer_of_frames
+from toongeo.driving.one_euro_filter import smoothed_both_ways
+from toongeo.driving.picture.reader_of_film import is_seen, reader_of_film
 from toongeo.driving.take import Take
 from toongeo.io import Video
 from toongeo.model.expression_schemes import EXPRESSIONS
@@ -19,21 +21,24 @@ from toongeo.protocols import LandmarkDetector
 
 __all__ = ["CAUTION", "VideoDriver"]
 
+_NOISE = 0.01  # s.d. of a weight of a still face
 CAUTION = 5.0  # of LandmarkDriver, for points that were found; chosen on films of astronaut and moustache_man
 
 
 class VideoDriver:
     """Reads the expression off a film of a performer, as an :class:`toongeo.ExpressionDriver`.
 
-    :func:`toongeo.track_landmarks` follows the face, :class:`LandmarkDriver` reads the weights. While the face is lost,
-    the last weights are held. Weights are as good as the points: on films like photographs they are near to the truth,
-    on films of drawn faces not yet (``benchmarks/RESULTS.md``).
+    :func:`toongeo.track_landmarks` follows the face. A frame in which it shows no expression is looked for, and in all
+    others the skin of that frame is found again, moved by pose and expression: landmarks only say where to start, and
+    where they miss in every frame alike, it does little harm. While the face is lost, the last weights are held. What
+    to expect is told in ``benchmarks/RESULTS.md``.
 
     Parameters
     ----------
     performer : Avatar, LandmarkRig, (68, 2) px landmarks of a neutral frame, or None
-        As of :class:`LandmarkDriver`; with None a neutral frame is found in the film itself, so the performer should
-        look into the camera without expression for a moment.
+        With None a neutral frame is found in the film itself, so the performer should look into the camera without
+        expression for a moment. Of another performer no neutral frame is known: weights are then read off the landmarks
+        alone, as by :class:`LandmarkDriver`.
     detector : LandmarkDetector, optional
         What finds the face; :func:`toongeo.detect_faces` unless another is given.
 
@@ -63,7 +68,7 @@ class VideoDriver:
         Parameters
         ----------
         recording : iterable of (H, W, 3) uint8 RGB
-            All of one size.
+            All of one size. It is gone through several times; of an iterator the frames are kept.
         fps : float
             Frames a second.
 
@@ -74,9 +79,22 @@ class VideoDriver:
         ValueError
             As of :func:`toongeo.track_landmarks`.
         """
-        seen = track_landmarks(recording, fps=fps, detector=self._detector).seen
-        performer = performer_of_frames(seen) if self._performer is None else self._performer
-        return LandmarkDriver(performer, caution=CAUTION).frames(seen, fps)
+        frames = list(recording) if isinstance(recording, Iterator) else recording
+        seen = track_landmarks(frames, fps=fps, detector=self._detector).seen
+        if self._performer is not None:
+            return LandmarkDriver(self._performer, caution=CAUTION).frames(seen, fps)
+        reader = reader_of_film(frames, seen)
+        there = np.array([is_seen(landmarks) for landmarks in seen])
+        weights = np.zeros((len(seen), len(reader.skin.rig.names)))
+        for k, (frame, landmarks) in enumerate(zip(frames, seen, strict=True)):
+            if there[k]:
+                weights[k] = reader(frame, landmarks).weights
+            else:
+                reader.lost()
+        held = np.maximum.accumulate(np.where(there, np.arange(len(there)), there.argmax()))
+        weights = weights[held]
+        weights = smoothed_both_ways(weights[:, :, None], _NOISE, fps)[:, :, 0]
+        return reader.skin.rig.all_weights(weights)
 
     def take(self, video: Video) -> Take:
         """The same with its times.

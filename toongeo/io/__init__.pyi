@@ -10,6 +10,8 @@ from toongeo.io.landmark_array import landmark_array as landmark_array
 from toongeo.io.landmarks.landmark_schemes import SCHEMES as SCHEMES
 from toongeo.io.landmarks.landmark_schemes import ibug_points as ibug_points
 from toongeo.io.page_html import page_html as page_html
+from toongeo.io.readers.open_camera import Camera as Camera
+from toongeo.io.readers.open_camera import open_camera as open_camera
 from toongeo.io.readers.read_glb import GlbDocument as GlbDocument
 from toongeo.io.readers.read_glb import read_glb as read_glb
 from toongeo.io.readers.read_image import read_image as read_image

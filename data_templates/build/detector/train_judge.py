@@ -1,4 +1,7 @@
-"""Chances of faces and points, calibrated on renders and clutter that nothing else was trained on."""
+"""Chances of faces and points, calibrated on renders and clutter that nothing else was trained on.
+
+Points of faces that were met badly count like others: what matters is to tell them.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from detector.workers import mapped
 from toongeo.model.ibug68 import PARTS
 from toongeo.pipeline.landmarks.search.detector_file import DetectorParts
 from toongeo.pipeline.landmarks.search.face_judge import FaceJudge, point_cues
-from toongeo.pipeline.landmarks.search.find_faces import TILTS, candidate_faces
+from toongeo.pipeline.landmarks.search.find_faces import candidate_faces
 from toongeo.pipeline.landmarks.search.frames import applied, box_of, inverse
 from toongeo.pipeline.landmarks.search.passes import face_patch, run_passes
 
@@ -19,6 +22,7 @@ __all__ = ["train_judge"]
 _RIDGE = 1e-2
 _STEPS = 40
 _FOUND, _ASTRAY = 0.15, 0.35  # radii: mean error of a face that was found, and of one that was not
+_THERE = 0.7  # radii between the middles of the points and of the face: it is this face, however badly placed
 _WITHIN = 0.08  # of the outer-eye distance: a point in its place
 
 
@@ -55,8 +59,6 @@ def _judged(job: tuple[str, int]):
     grey = samples.grey[k] if kind == "face" else clutter[k]
     candidates = candidate_faces(grey, parts)
     if kind == "clutter":
-        for tilt in TILTS:
-            candidates += candidate_faces(grey, parts, tilt)
         return [(candidate.cues, False) for candidate in candidates], None
     truth = samples.landmarks[k]
     box, out, best = box_of(truth), [], None
@@ -64,9 +66,10 @@ def _judged(job: tuple[str, int]):
         error = np.linalg.norm(candidate.passes.points - truth, axis=1).mean() / box[2]
         if error < _FOUND:
             out.append((candidate.cues, True))
-            best = best or candidate
         elif error > _ASTRAY:
             out.append((candidate.cues, False))
+        if np.hypot(*(box_of(candidate.passes.points)[:2] - box[:2])) < _THERE * box[2]:
+            best = max((best or candidate, candidate), key=lambda one: one.cues[:2].sum())
     if best is None:
         return out, None
     patch = face_patch(grey, box_of(best.passes.points))

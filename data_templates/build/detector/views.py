@@ -29,7 +29,7 @@ def view_classifiers(
     """
     weights, offsets = [], []
     for view in range(VIEWS):
-        mine = faces[views == view]
+        mine = faces[views == view] if (views == view).any() else faces  # a toy may lack a view
         rows = np.concatenate([mine, clutter])
         aims = np.repeat([1.0, -1.0], [len(mine), len(clutter)]).astype(np.float32)
         shares = np.repeat([0.5 / len(mine), 0.5 / len(clutter)], [len(mine), len(clutter)]).astype(np.float32)

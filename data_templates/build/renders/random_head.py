@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from renders.canvas import between
 from renders.template import template
 
-__all__ = ["KINDS", "Head", "random_head"]
+__all__ = ["KINDS", "Head", "finished_head", "random_expression", "random_head"]
 
 KINDS = ("person", "caricature", "cartoon")
 # By kind: spread of the identity in standard deviations (low, high), and of the magnification of parts (log).
@@ -40,12 +40,16 @@ def random_head(rng: np.random.Generator, kind: str) -> Head:
     identity = model.prior.mean * between(rng, 0, 1) + rng.normal(size=80) * between(rng, *_SPREAD[kind])
     identity[30:] *= between(rng, 0.3, 1)  # the small modes are noise when they are exaggerated
     vertices = model.vertices(identity, random_expression(rng, kind))
+    return finished_head(rng, kind, vertices, [eye.placed(identity) for eye in model.eyes])
+
+
+def finished_head(rng: np.random.Generator, kind: str, vertices: NDArray[np.float64], eyeballs) -> Head:
+    """The head of a face (n, 3) mm with eyeballs (centre, radius): a gaze, and parts out of proportion."""
     gaze = np.radians(rng.normal(size=2) * (12, 8))
     direction = np.array([np.sin(gaze[0]), np.sin(gaze[1]), np.cos(gaze[0])])
     direction /= np.linalg.norm(direction)
     parts, angles = [vertices], [np.full(len(vertices), 9.0)]
-    for eye in model.eyes:
-        centre, radius = eye.placed(identity)
+    for eye, (centre, radius) in zip(template().model.eyes, eyeballs, strict=True):
         parts.append(eye.vertices * max(radius, 6.0) + centre)
         cosine = eye.vertices @ direction / np.linalg.norm(eye.vertices, axis=1)
         angles.append(np.arccos(np.clip(cosine, -1, 1)))

@@ -86,7 +86,7 @@ def drawn(rng: np.random.Generator, scene: Scene, style: str) -> Render:
     by_hand = style in _DRAWN
     if (by_hand and rng.random() < 0.7) or rng.random() < 0.05:
         picture = trace_edges(rng, picture, scene.edges)
-    if by_hand and rng.random() < 0.65:
+    if by_hand and not scene.lined and rng.random() < 0.65:
         draw_features(rng, picture, points)
     chance, amount, magnifying = _WARP[scene.kind]
     if rng.random() < chance:

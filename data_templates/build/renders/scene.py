@@ -45,7 +45,8 @@ _SHINE = np.array([0, 70, 160, 30, 60, 0, 0, 0, 0])  # of the highlight on each 
 @dataclass(frozen=True, eq=False)
 class Scene:
     """`picture` (s, s, 3) float32, 0-255; `landmarks` (68, 2) px; `parts` (s, s) uint8 of :class:`Part`; `edges`
-    (s, s) float32 in [0, 1] where an artist would draw a line; the `kind` of head, its `yaw` in degrees."""
+    (s, s) float32 in [0, 1] where an artist would draw a line; the `kind` of head, its `yaw` in degrees; `plain` if its
+    colours are flat, `lined` if its features are drawn with lines already."""
 
     picture: NDArray[np.float32]
     landmarks: NDArray[np.float64]
@@ -54,6 +55,7 @@ class Scene:
     kind: str
     yaw: float
     plain: bool
+    lined: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,14 +70,20 @@ class _Model:
 
 
 def random_scene(
-    rng: np.random.Generator, kind: str, plain: bool = False, size: int = 256, extent=(0.155, 0.195)
+    rng: np.random.Generator,
+    kind: str,
+    plain: bool = False,
+    size: int = 256,
+    extent=(0.155, 0.195),
+    head: Head | None = None,
 ) -> Scene:
-    """A scene with a head of a kind (see `random_head.KINDS`); `plain` ones have flat colours and light.
+    """A scene with a head of a kind (see `random_head.KINDS`), unless one is given; `plain` ones have flat colours and
+    light.
 
     `extent` is the range of the landmarks' root mean square radius as a share of the size.
     """
     count, palette = len(template().model.mean), random_palette(rng)
-    head = random_head(rng, kind)
+    head = head or random_head(rng, kind)
     chart, brows = painted_skin(rng, palette, plain)
     model = _assembled(rng, head)
     view, rows = random_view(rng, head.vertices[:count], model.normals[:count], size, extent)

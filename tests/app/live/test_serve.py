@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from tests.app.running import running
+from toongeo.app.cli import main
 from toongeo.app.live.avatar_server import LARGEST, PAGE, AvatarServer, acknowledged
 from toongeo.app.live.read_message import read_message
 from toongeo.app.loopback import HOST
@@ -65,6 +66,25 @@ def test_a_take_is_played_from_when_a_page_is_there(glb):
     with running(glb, take=Take.of_frames(weights, 60)) as server, page_socket(server) as page:
         played = [json.loads(page.recv(timeout=10))["jawOpen"] for _ in range(4)]
     assert played == [0.1, 0.2, 0.3, 0.4]
+
+
+def test_the_face_before_a_camera_is_shown(glb, performance, capsys):
+    """At rest at first, then the jaw opens."""
+    frames = [performance.frames[k] for k in (2, 2, 2, 2, 2, 2, 2, 2, 3, 4, 5, 6)]
+    with (
+        running(glb, camera=[(frame, k / 10) for k, frame in enumerate(frames)]) as server,
+        page_socket(server) as page,
+    ):
+        seen = [json.loads(page.recv(timeout=60)) for _ in frames]
+    opened = [weights["jawOpen"] for weights in seen]
+    assert opened[:8] == [0] * 8 and max(opened) > 0.2 and set(seen[0]) == set(server.names)
+    assert "look into the camera without expression\nthe face is known" in capsys.readouterr().out
+
+
+def test_a_camera_that_is_not_there_is_named(glb, tmp_path, capsys):
+    for camera, message in (("97", "camera 97: there is none"), (str(tmp_path / "none.mp4"), "none.mp4")):
+        assert main(["serve", str(glb), "--camera", camera, "--no-open"]) == 2
+        assert message in capsys.readouterr().err
 
 
 def fetched(url, **headers):

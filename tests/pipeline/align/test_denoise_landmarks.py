@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,12 @@ def test_so_they_do_on_portraits_and_caricatures(shared):
     for path in sorted(files):
         landmarks = read_landmarks(path)
         assert denoise_landmarks(fit_3dmm(None, landmarks), landmarks).change is None, path.name
+
+
+def test_a_model_that_knows_few_faces_does_not_take_a_drawing_for_noise(cartoon, model):
+    few = replace(model, identity=model.identity[:2], prior=None)
+    landmarks = cartoon("bad_guy")[1]
+    assert denoise_landmarks(fit_3dmm(None, landmarks, model=few), landmarks).change is None
 
 
 @pytest.mark.parametrize(("share", "left"), [(0.04, 0.7), (0.08, 0.6)])

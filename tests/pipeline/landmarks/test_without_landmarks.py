@@ -32,6 +32,6 @@ def test_a_fit_needs_points_or_a_picture():
 
 def test_only_doubtful_points_are_warned_of():
     points = np.zeros((68, 2))
-    assert detection_warnings(LandmarkDetection(points, np.full(68, 0.8), 0.9)) == ()
+    assert detection_warnings(LandmarkDetection(points, np.full(68, 0.9), 0.9)) == ()
     (warning,) = detection_warnings(LandmarkDetection(points, np.full(68, 0.3), 0.9))
     assert "face 90 %, points 30 %" in warning

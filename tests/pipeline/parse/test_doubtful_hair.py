@@ -12,7 +12,7 @@ DARK, RED = (30, 20, 20), (200, 20, 20)
 
 @pytest.fixture
 def scene():
-    """A head of 100 px with a dark cap of hair, a strand beside the neck, and a coat of two colours, one the hair's."""
+    """A head of 100 px with dark hair, a strand beside the cheek, and a coat of two colours, one the hair's."""
     y, x = np.mgrid[:240, :200]
     skull = ((x - 100) / 40) ** 2 + ((y - 90) / 50) ** 2 < 1
     hull = skull & (y > 70)
@@ -28,7 +28,6 @@ def scene():
         cut=SimpleNamespace(head=hull | cap | strand | red | coat, skin=hull),
         cap=cap,
         strand=strand,
-        clothes=red | coat,
         nothing=np.zeros_like(cap),
     )
 
@@ -37,11 +36,17 @@ def found(scene, mask):
     return doubtful_hair(scene.view, scene.zones, scene.cut, mask)
 
 
-def test_without_a_mask_hair_hangs_and_clothes_do_not(scene):
+def test_without_a_mask_hair_is_what_is_left_above_the_chin(scene):
+    np.testing.assert_array_equal(found(scene, scene.nothing), (scene.cap | scene.strand) & ~scene.zones.below_chin)
+
+
+def test_without_a_mask_a_fringe_is_told_from_an_eye_by_its_colour(scene):
+    fringe, eye = scene.nothing.copy(), scene.nothing.copy()
+    fringe[71:80, 80:120], eye[90:95, 80:90] = True, True
+    scene.view.pixels[fringe], scene.view.pixels[eye] = DARK, RED
+    scene.cut.skin = scene.cut.skin & ~fringe & ~eye
     hair = found(scene, scene.nothing)
-    assert (hair & scene.cap).sum() > 0.95 * scene.cap.sum()
-    assert (hair & scene.strand).sum() > 0.9 * scene.strand.sum()
-    assert not (hair & scene.clothes).any()
+    assert hair[fringe].all() and not hair[eye].any()
 
 
 def test_without_a_head_there_is_no_hair(scene):

@@ -12,11 +12,13 @@ import numpy as np
 from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only
 from toongeo.arrays import Floats
+from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import OUTER_EYES
 from toongeo.pipeline.align.noise.field_likelihood import FieldLikelihood
 from toongeo.pipeline.align.noise.left_out import left_out
 from toongeo.pipeline.align.symmetric_field import FieldPrior, observed_covariance
 from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 
 __all__ = ["DenoisedLandmarks", "LandmarkNoise", "Noise", "check_noise", "denoise_landmarks"]
 
@@ -91,13 +93,13 @@ def denoise_landmarks(fit: FaceFit, landmarks: Floats, noise: Noise = "auto") ->
     Parameters
     ----------
     fit : FaceFit
-        To these landmarks.
+        To these landmarks. In the place of a fit of another model than the default one stands one of that: what a model
+        with few faces or no expressions cannot show would pass for noise.
     landmarks : (68, 2) float, px
         NaN rows are missing.
     noise : "auto" or float
         Standard deviation in outer-eye distances; 0: the points are exact. ``"auto"``: as found, and points that seem
-        to be set with care (below 0.018) are left as they are, but for those that are off by 0.25 and more. Nothing is
-        done on a model without expressions.
+        to be set with care (below 0.018) are left as they are, but for those that are off by 0.25 and more.
 
     Returns
     -------
@@ -123,10 +125,10 @@ def denoise_landmarks(fit: FaceFit, landmarks: Floats, noise: Noise = "auto") ->
     """
     check_noise(noise)
     seen = np.flatnonzero(np.isfinite(landmarks).all(1))
-    # A model without expressions misses those of the picture, which is not the landmarks' fault.
-    blind = noise == "auto" and not fit.model.has("expression")
-    if noise == 0 or blind or len(seen) < _FEWEST:
+    if noise == 0 or len(seen) < _FEWEST:
         return DenoisedLandmarks(landmarks, LandmarkNoise())
+    if fit.model is not default_model():
+        fit = fit_3dmm(None, landmarks)
     covariance, missed, px = _observations(fit, landmarks, seen)
     kept, amplitude, sigma = _believed(covariance, missed, noise)
     smoothed = noise != "auto" or sigma >= _BY_HAND

@@ -24,10 +24,10 @@ _SKIN = tuple(
     label for label in FaceLabel if label not in (FaceLabel.BACKGROUND, FaceLabel.HAIR, FaceLabel.OTHER, FaceLabel.HAT)
 )
 _COVERED_MM = 1.0  # so far inside the hair a vertex is covered
-_BESIDE_MM = (
-    10.0  # inside the head's outline, and no broader: hair there hangs beside a face that is narrower than the fit
-)
-_OVERLAP_MM = 3.5  # of that hair may lie over skin: as much as what is drawn inside an outline ends inside
+# Chosen on the seven examples and two caricatures: with more overlap bars reach from ear to cheek, with less the head
+# gives way beside skin that is seen.
+_BESIDE_MM = 10.0  # breadth along the head's outline below which hair hangs beside a face narrower than the fit
+_OVERLAP_MM = 3.5  # of such hair that may lie over skin
 _SIDEWAYS = 0.6  # cosine to the viewer below which a covered side of the head gives way
 
 

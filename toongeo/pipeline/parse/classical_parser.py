@@ -44,8 +44,8 @@ class ClassicalParser:
     at its own resolution: shifted and scaled copies of the landmarks' contour are weighed by what is inside them and
     across their line. Brows are what differs from skin along their landmarks; nose and lips are where
     the landmarks are. Hair and hats are where ``hair_finder`` finds them; a mask that is not trusted loses what the
-    other cuts take for skin or background, and if it is empty, hair is what of the head is not skin. Dark outlines
-    belong to neither side: they are ``OTHER``, and so are glasses and beards; clothes are background.
+    other cuts take for skin or background; if it is empty, hair is what of the head above the chin is not skin. Dark
+    outlines belong to neither side: they are ``OTHER``, and so are glasses and beards; clothes are background.
 
     Parameters
     ----------

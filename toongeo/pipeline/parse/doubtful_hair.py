@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
 
 from toongeo.arrays import Mask
 from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
 from toongeo.pipeline.parse.face_zones import FaceZones
 from toongeo.pipeline.parse.head_and_skin import HeadAndSkin
-from toongeo.pipeline.parse.masks import grown
 from toongeo.pipeline.parse.working_view import WorkingView
 
 __all__ = ["doubtful_hair"]
@@ -18,15 +16,12 @@ __all__ = ["doubtful_hair"]
 # wall, white hair beside a pale face): then the mask stays.
 _KEPT = 0.5
 _COMMON = 0.01  # of the crown's pixels: so common is a colour of hair
-# Shares of the head's size.
-_STRANDS = 0.01  # thinner bridges between hair and clothes do not count
-_HANG = 0.3  # so far from the fitted head there is hair below the chin
 
 
 def doubtful_hair(view: WorkingView, zones: FaceZones, cut: HeadAndSkin, mask: Mask) -> Mask:
     """Hair (h, w) bool of the working view from a mask that is not trusted, empty perhaps.
 
-    An empty mask means that hair could not be told: then hair is what of the head is not skin.
+    An empty mask means that hair could not be told: then hair is what of the head above the chin is not skin.
     """
     if not mask.any():
         return _left(view, zones, cut.head & ~cut.skin)
@@ -37,14 +32,10 @@ def doubtful_hair(view: WorkingView, zones: FaceZones, cut: HeadAndSkin, mask: M
 
 
 def _left(view: WorkingView, zones: FaceZones, left: Mask) -> Mask:
-    """Of a mask, all above the chin beside the face, and elsewhere what has its colours.
+    """Of a mask, all above the chin that is beside the face, and within the face what has its colours.
 
-    Below the chin it must also hang together with the hair above, and not hang too far, or it is taken for clothes.
+    Nothing below the chin: what is left there are clothes more often than hair.
     """
     crown = left & ~zones.below_chin & ~zones.hull
-    alike = crown | (left & (colour_share(colour_codes(view.pixels), crown) > _COMMON))
-    firm = grown(alike, -_STRANDS * view.head)
-    _, pieces = cv2.connectedComponents(firm.astype(np.uint8))
-    hanging = firm & np.isin(pieces, np.unique(pieces[firm & crown]))
-    allowed = grown(hanging, 2 * _STRANDS * view.head) & grown(zones.silhouette, _HANG * view.head)
-    return np.asarray(alike & (~zones.below_chin | allowed))
+    common = colour_share(colour_codes(view.pixels), crown) > _COMMON
+    return np.asarray(crown | (left & zones.hull & common))

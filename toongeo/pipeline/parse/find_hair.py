@@ -46,7 +46,7 @@ def find_hair(
     alone, say how likely each is hair or a hat, by its colour, texture and place and by what is around it; two
     different cuts follow its outlines. Hair grows on the head: brows and crumbs are left out, and below the chin counts
     only what hangs from above, not coats and collars. A mask is trusted where the two cuts agree, the trees are
-    sure, and the hair tops the head. Where the trees see hair nowhere the mask is empty.
+    sure, the picture shows its outline, and the hair tops the head. Where the trees see hair nowhere it is empty.
 
     Parameters
     ----------

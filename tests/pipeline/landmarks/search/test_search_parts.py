@@ -5,6 +5,7 @@ from toongeo.pipeline.landmarks.search.cascade import Cascade, CascadeStage
 from toongeo.pipeline.landmarks.search.detector_file import detector_arrays, read_detector, shipped_detector
 from toongeo.pipeline.landmarks.search.face_boxes import BoxTemplates, face_boxes
 from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX, face_crop, point_descriptors
+from toongeo.pipeline.landmarks.search.flat_look import flat_look
 from toongeo.pipeline.landmarks.search.frames import (
     applied,
     box_matrix,
@@ -15,7 +16,7 @@ from toongeo.pipeline.landmarks.search.frames import (
 )
 from toongeo.pipeline.landmarks.search.orientation_maps import DIRECTIONS, orientation_maps
 from toongeo.pipeline.landmarks.search.passes import face_patch, run_passes
-from toongeo.pipeline.landmarks.search.template_misfit import template_misfit
+from toongeo.pipeline.landmarks.search.template_residuals import template_residuals
 
 
 def turn(degrees, scale, shift):
@@ -140,8 +141,38 @@ def test_the_template_fits_its_own_faces_and_no_others(model, rng):
 
     face = model.vertices(model.prior.mean + 0.5 * rng.normal(size=80))[model.landmarks]
     seen = ScaledOrthographicCamera.look(yaw=25.0, roll=10.0).project(face)
-    assert template_misfit(seen) < 0.03
-    assert template_misfit(seen + rng.normal(0, 0.2 * box_of(seen)[2], (68, 2))) > 0.08
+    assert template_residuals(seen).shape == (51,) and np.sqrt((template_residuals(seen) ** 2).mean()) < 0.03
+    noisy = seen + rng.normal(0, 0.2 * box_of(seen)[2], (68, 2))
+    assert np.sqrt((template_residuals(noisy) ** 2).mean()) > 0.08
+
+
+def test_parts_go_on_by_themselves(render):
+    """Each part from its own points: what the others are does not matter, and points off their places come nearer."""
+    import cv2
+
+    truth, cascade = render(0), shipped_detector().cascade
+    grey = cv2.cvtColor(truth.picture, cv2.COLOR_RGB2GRAY)
+    nose = next(part.rows for part in cascade.parts if 30 in part.rows)
+    moved = truth.landmarks.copy()
+    moved[nose] += [4.0, 3.0]
+    refined = cascade.refined(grey, moved)
+    np.testing.assert_array_equal(
+        np.delete(refined, nose, axis=0), np.delete(cascade.refined(grey, truth.landmarks), nose, axis=0)
+    )
+    assert np.linalg.norm(refined[nose] - truth.landmarks[nose], axis=1).mean() < 3.5
+    np.testing.assert_array_equal(moved[nose] - truth.landmarks[nose], np.tile([4.0, 3.0], (9, 1)))
+
+
+def test_lines_between_flat_colours_look_flat_whatever_their_contrast(rng):
+    import cv2
+
+    points = rng.normal(CROP_PX / 2, 27, (68, 2))
+    lines = np.full((CROP_PX, CROP_PX), 90, np.uint8)
+    cv2.circle(lines, (80, 80), 40, 200, 2)
+    drawn, grain = (flat_look(grey, points, points) for grey in (lines, rng.integers(0, 255, lines.shape, np.uint8)))
+    assert drawn > 0.85 and 0.1 < grain < 0.3
+    assert flat_look(lines // 2, points, points) == pytest.approx(drawn, abs=0.02)
+    assert flat_look(np.full_like(lines, 7), points, points) == 1.0
 
 
 def test_the_detector_travels_through_its_file(tmp_path):

@@ -14,14 +14,14 @@ from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 __all__ = ["drawn_inside"]
 
 
-_INSIDE_MM = 5.0  # between the outline and what is drawn inside: the thinnest hair
+_INSIDE_MM = 5.0  # between the outline and what is drawn inside: with 3.5 covered ears show as bulges of the shell
 _ROUNDS, _PASSES = 4, 6  # pushes, and passes that spread each over the neighbours
 
 
 def drawn_inside(
     face: AlignedFace, plane: WorkingPlane, X: Reals, outline: NDArray[np.bool_], moving: NDArray[np.bool_]
 ) -> Reals:
-    """Displacement (n, 3) in the plane, across the view, that brings moving vertices 3.5 mm inside cells of an outline.
+    """Displacement (n, 3) in the plane, across the view, that brings moving vertices 5 mm inside cells of an outline.
 
     X is (n, 3) in the plane's frame. Their neighbours that are no part of the face follow smoothly.
     """

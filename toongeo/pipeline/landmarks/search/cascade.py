@@ -96,10 +96,14 @@ class Cascade:
 
     def run(self, grey: np.ndarray, start: NDArray[np.float64]) -> NDArray[np.float64]:
         """Points (68, 2) px of the picture after all stages and all parts."""
-        points = self.rough(grey, start, len(self.stages))
+        return self.refined(grey, self.rough(grey, start, len(self.stages)))
+
+    def refined(self, grey: np.ndarray, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points (68, 2) px after each part went on by itself from where its points are."""
+        out = points.copy()
         for part in self.parts:
-            points[part.rows] = part.run(grey, points[part.rows])
-        return points
+            out[part.rows] = part.run(grey, points[part.rows])
+        return out
 
 
 def realigned(

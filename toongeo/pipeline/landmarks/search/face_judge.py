@@ -6,19 +6,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.ibug68 import PARTS
+from toongeo.model.ibug68 import INNER, PARTS
 from toongeo.pipeline.landmarks.search.passes import Passes
-from toongeo.pipeline.landmarks.search.template_misfit import template_misfit
+from toongeo.pipeline.landmarks.search.template_residuals import template_residuals
 
-__all__ = ["FaceJudge", "face_cues", "point_cues"]
+__all__ = ["FACE_CUES", "POINT_CUES", "FaceJudge", "face_cues", "point_cues"]
 
-_LEAST_SPREAD = 1e-3  # radii
+FACE_CUES = 6
+POINT_CUES = FACE_CUES + 2
+_LEAST_SPREAD, _LEAST_RESIDUAL = 1e-3, 5e-3  # radii
 _PART_NAMES = tuple(PARTS)
 
 
 @dataclass(frozen=True, eq=False)
 class FaceJudge:
-    """Logistic regressions: `face` (f,) of :func:`face_cues`, `points` (parts, p) of :func:`point_cues`."""
+    """Logistic regressions: `face` (6,) of :func:`face_cues`, `points` (parts, 8) of :func:`point_cues`."""
 
     face: NDArray[np.float64]
     points: NDArray[np.float64]
@@ -35,17 +37,23 @@ class FaceJudge:
         return _logistic(np.einsum("kc,kc->k", cues, self.points[part]))
 
 
-def face_cues(verified: float, box_score: float, passes: Passes) -> NDArray[np.float64]:
-    """(5,) What is known of a face: the scores of the verifier and of the box, how far passes from other starts
-    disagree (log), how far the points are from any face of the template (log), and 1."""
+def face_cues(verified: float, box_score: float, flat: float, passes: Passes) -> NDArray[np.float64]:
+    """(6,) What is known of a face: the scores of the verifier and of the box, how much it looks like a flat drawing,
+    how far passes from other starts disagree (log), how far the points are from any face of the template (log), and
+    1."""
     spread = np.log(passes.spread.mean() + _LEAST_SPREAD)
-    return np.array([verified, box_score, spread, np.log(template_misfit(passes.points)), 1.0])
+    misfit = np.sqrt((template_residuals(passes.points) ** 2).mean())
+    return np.array([verified, box_score, flat, spread, np.log(misfit + _LEAST_RESIDUAL), 1.0])
 
 
 def point_cues(passes: Passes, face: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(68, 6) What is known of each point: how far the passes disagree about it (log), and the cues of the face."""
+    """(68, 8) What is known of each point: how far the passes disagree about it (log), how far it is from the nearest
+    face of the template (log; for the jaw the mean of the others), and the cues of the face."""
     own = np.log(passes.spread + _LEAST_SPREAD)
-    return np.column_stack([own, np.repeat(face[None], len(own), axis=0)])
+    residuals = np.log(template_residuals(passes.points) + _LEAST_RESIDUAL)
+    misfit = np.full(len(own), residuals.mean())
+    misfit[INNER] = residuals
+    return np.column_stack([own, misfit, np.repeat(face[None], len(own), axis=0)])
 
 
 def _logistic(value: Any) -> Any:

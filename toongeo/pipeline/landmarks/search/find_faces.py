@@ -11,26 +11,27 @@ from toongeo.pipeline.landmarks.search.detector_file import DetectorParts
 from toongeo.pipeline.landmarks.search.face_boxes import face_boxes
 from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX
 from toongeo.pipeline.landmarks.search.face_judge import face_cues, point_cues
+from toongeo.pipeline.landmarks.search.flat_look import flat_look
 from toongeo.pipeline.landmarks.search.frames import applied, box_matrix, box_of, composed, inverse
 from toongeo.pipeline.landmarks.search.passes import Passes, face_patch, run_passes
 
-__all__ = ["TILTS", "Candidate", "FoundFace", "candidate_faces", "find_faces"]
+__all__ = ["Candidate", "FoundFace", "candidate_faces", "find_faces"]
 
-TILTS = (-35.0, 35.0)  # degrees, tried when no upright face is found
+_TILTS = (-35.0, 35.0)  # degrees, tried when no upright face is found
 _BOXES = 14  # looked at
 _ROUGH_STAGES = 2  # of the cascade, before the verifier looks for the first time
 _KEPT = 4  # boxes that the whole cascade is run on, at least
 _PLAIN = 0.5  # the sum of the first scores at which others are looked at too: there may be many faces
 # Chances of a face: the least one, and that beside a sure face. Chosen on renders and on photographs without a face.
-_FACE, _SURE, _BESIDE = 0.7, 0.9, 0.9
-_PLACED = 0.5  # the mean confidence of inner points below which it is no face: 1 % of renders have less than 0.6
+_FACE, _SURE, _BESIDE = 0.8, 0.9, 0.9
+_PLACED = 0.35  # mean confidence of inner points; of drawn renders, points with less were off the face
 _OVERLAP = 0.7  # radii between the middles of faces that cannot both be
 _SAME = 0.15  # radii between the points of what would end as one face
 
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """Points after passes from three starts, and the cues of the face (5,)."""
+    """Points after passes from three starts, and the cues of the face (6,)."""
 
     passes: Passes
     cues: NDArray[np.float64]
@@ -57,7 +58,7 @@ class _Rough:
 def find_faces(grey: np.ndarray, parts: DetectorParts) -> list[FoundFace]:
     """Every face of a grey picture (h, w), the largest first."""
     found: list[tuple[float, Candidate]] = []
-    for tilt in (0.0, *TILTS):
+    for tilt in (0.0, *_TILTS):
         for rough in _rough_faces(grey, parts, tilt):
             if rough.score > _PLAIN or _best(found) < _SURE:
                 candidate = _checked(grey, rough, parts)
@@ -74,9 +75,9 @@ def find_faces(grey: np.ndarray, parts: DetectorParts) -> list[FoundFace]:
     return sorted(placed, key=lambda face: -box_of(face.points)[2])
 
 
-def candidate_faces(grey: np.ndarray, parts: DetectorParts, tilt: float = 0.0) -> list[Candidate]:
-    """The likeliest faces of a picture, searched after it was turned by `tilt` degrees."""
-    return [_checked(grey, rough, parts) for rough in _rough_faces(grey, parts, tilt)]
+def candidate_faces(grey: np.ndarray, parts: DetectorParts) -> list[Candidate]:
+    """The likeliest upright faces of a picture."""
+    return [_checked(grey, rough, parts) for rough in _rough_faces(grey, parts, 0.0)]
 
 
 def _best(found: list[tuple[float, Candidate]]) -> float:
@@ -110,7 +111,8 @@ def _checked(grey: np.ndarray, rough: _Rough, parts: DetectorParts) -> Candidate
     passes = run_passes(patch.grey, applied(patch.matrix, rough.points), parts.cascade, first_look=True)
     verified = parts.verifier.score(patch.grey, passes.points, parts.cascade.shape)
     back = Passes(applied(inverse(patch.matrix), passes.points), passes.spread)
-    return Candidate(back, face_cues(verified, rough.box_score, passes))
+    flat = flat_look(patch.grey, passes.points, parts.cascade.shape)
+    return Candidate(back, face_cues(verified, rough.box_score, flat, passes))
 
 
 def _finished(grey: np.ndarray, candidate: Candidate, chance: float, parts: DetectorParts) -> FoundFace:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from toongeo.pipeline.landmarks.search.detector_file import DetectorParts
 from toongeo.pipeline.landmarks.search.face_judge import face_cues, point_cues
 from toongeo.pipeline.landmarks.search.find_faces import FoundFace
+from toongeo.pipeline.landmarks.search.flat_look import flat_look
 from toongeo.pipeline.landmarks.search.frames import applied, box_of, inverse, similarity_onto
 from toongeo.pipeline.landmarks.search.passes import face_patch, run_passes
 
@@ -30,12 +31,11 @@ def follow_face(
     patch = face_patch(grey, box_of(start))
     passes = run_passes(patch.grey, applied(patch.matrix, start), parts.cascade, first_look=True)
     verified = parts.verifier.score(patch.grey, passes.points, parts.cascade.shape)
-    cues = face_cues(verified, _BOX_SCORE, passes)
+    flat = flat_look(patch.grey, passes.points, parts.cascade.shape)
+    cues = face_cues(verified, _BOX_SCORE, flat, passes)
     if thorough:
         passes = run_passes(patch.grey, passes.points, parts.cascade)
-    points = passes.points.copy()
-    for part in () if thorough else parts.cascade.parts:
-        points[part.rows] = part.run(patch.grey, points[part.rows])
+    points = passes.points if thorough else parts.cascade.refined(patch.grey, passes.points)
     confidence = parts.judge.point_chances(point_cues(passes, cues))
     return FoundFace(applied(inverse(patch.matrix), points), confidence, parts.judge.face_chance(cues))
 

@@ -38,7 +38,7 @@ class FacePatch:
 
 @dataclass(frozen=True, eq=False)
 class Passes:
-    """`points` (68, 2) px, the median of the passes, and the `spread` (68,) of each point about it in radii."""
+    """`points` (68, 2) px where the passes agree, and the `spread` (68,) of each point among them in radii."""
 
     points: NDArray[np.float64]
     spread: NDArray[np.float64]
@@ -62,20 +62,26 @@ def face_patch(grey: np.ndarray, box: NDArray[np.float64]) -> FacePatch:
 def run_passes(grey: np.ndarray, points: NDArray[np.float64], cascade: Cascade, *, first_look: bool = False) -> Passes:
     """The cascade from five starts about a face found roughly at `points` (68, 2) px, and from their mirror images.
 
-    The `first_look` is from three, not mirrored, and ends before the parts.
+    The parts go on from the median of those, in the picture and in its mirror image. The `first_look` is from three
+    starts, not mirrored, and ends before the parts.
     """
-    start = similarity_onto(points, cascade.shape)
+    start, stages = similarity_onto(points, cascade.shape), len(cascade.stages)
     if first_look:
-        stages = len(cascade.stages)
-        found = [cascade.rough(grey, _moved(start, move), stages) for move in _STARTS[:_FIRST_LOOK]]
-    else:
-        found = [cascade.run(grey, _moved(start, move)) for move in _STARTS]
-        flipped = np.ascontiguousarray(grey[:, ::-1])
-        start = similarity_onto(_mirrored(points, grey), cascade.shape)
-        found += [_mirrored(cascade.run(flipped, _moved(start, move)), grey) for move in _STARTS]
-    every = np.array(found)
-    median = np.median(every, axis=0)
-    return Passes(median, np.linalg.norm(every - median, axis=2).mean(axis=0) / box_of(median)[2])
+        return _gathered([cascade.rough(grey, _moved(start, move), stages) for move in _STARTS[:_FIRST_LOOK]])
+    found = [cascade.rough(grey, _moved(start, move), stages) for move in _STARTS]
+    flipped = np.ascontiguousarray(grey[:, ::-1])
+    start = similarity_onto(_mirrored(points, grey), cascade.shape)
+    found += [_mirrored(cascade.rough(flipped, _moved(start, move), stages), grey) for move in _STARTS]
+    rough = _gathered(found)
+    here = cascade.refined(grey, rough.points)
+    there = _mirrored(cascade.refined(flipped, _mirrored(rough.points, grey)), grey)
+    apart = np.linalg.norm(here - there, axis=1) / 2 / box_of(rough.points)[2]
+    return Passes((here + there) / 2, rough.spread + apart)
+
+
+def _gathered(found: list[NDArray[np.float64]]) -> Passes:
+    median = np.median(np.array(found), axis=0)
+    return Passes(median, np.linalg.norm(np.array(found) - median, axis=2).mean(axis=0) / box_of(median)[2])
 
 
 def _moved(start: NDArray[np.float64], move: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""How far 68 points are from those of any likely face of the default template."""
+"""How far points are from those of any likely face of the default template."""
 
 from functools import cache
 
@@ -9,15 +9,15 @@ from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.model.default_model import default_model
 from toongeo.model.ibug68 import INNER
 
-__all__ = ["template_misfit"]
+__all__ = ["template_residuals"]
 
 _IDENTITIES = 30  # modes; the others hardly move a landmark
 _ROUNDS = 4
 _NOISE = 0.05  # radii: what caricatures differ from people, against one standard deviation of a mode
 
 
-def template_misfit(landmarks: NDArray[np.float64]) -> float:
-    """Root mean square distance of the inner points from the nearest likely face, in radii of the points.
+def template_residuals(landmarks: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(51,) Distances of the inner of 68 points (68, 2) px from the nearest likely face, in radii of the points.
 
     Pose and coefficients take turns: a scaled orthographic pose in closed form, then ridge regression on the modes of
     identity and named expressions.
@@ -25,7 +25,7 @@ def template_misfit(landmarks: NDArray[np.float64]) -> float:
     Examples
     --------
     >>> flat = default_model().mean[default_model().landmarks][:, :2] * [1, -1]
-    >>> bool(template_misfit(flat) < 0.01 < template_misfit(flat[::-1].copy()))
+    >>> bool(template_residuals(flat).max() < 0.01 < template_residuals(flat[::-1].copy()).max())
     True
     """
     points = landmarks[INNER]
@@ -39,7 +39,7 @@ def template_misfit(landmarks: NDArray[np.float64]) -> float:
         aim = (points - shift - mean @ camera.T).ravel() / (_NOISE * radius)
         c = np.linalg.solve(flat.T @ flat + np.eye(len(modes)), flat.T @ aim)
         shape = mean + np.tensordot(c, modes, 1)
-    return float(np.sqrt(((shape @ camera.T + shift - points) ** 2).sum(axis=1).mean()) / radius) + 1e-4
+    return np.linalg.norm(shape @ camera.T + shift - points, axis=1) / radius
 
 
 @cache

@@ -1,0 +1,1 @@
+"""A performer's own skin, found again in every frame."""
