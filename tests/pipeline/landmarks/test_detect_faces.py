@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 import skimage.data
 
+from tests.conftest import CARTOONS
 from toongeo import detect_faces, detect_landmarks
 from toongeo.metrics import landmark_error
 from toongeo.model.ibug68 import MIRROR
@@ -37,6 +38,13 @@ def test_most_renders_are_found_with_their_points(crowd):
     errors = [min((inner_error(face.points, truth) for face in faces), default=np.inf) for truth, faces in crowd]
     assert np.median(errors) < 0.06
     assert np.sum(np.array(errors) < 0.12) >= 7
+
+
+@pytest.mark.parametrize("example", CARTOONS)
+def test_the_face_of_each_example_is_the_largest_that_is_found(cartoon, example):
+    """The astronaut's picture has a helmet in it that looks somewhat like a larger face."""
+    img, landmarks = cartoon(example)
+    assert inner_error(detect_landmarks(img).points, landmarks) < 0.1
 
 
 def test_the_same_picture_gives_the_same_bytes(photograph, found):

@@ -25,6 +25,7 @@ _PLAIN = 0.5  # the sum of the first scores at which others are looked at too: t
 # Chances of a face: the least one, and that beside a sure face. Chosen on renders and on photographs without a face.
 _FACE, _SURE, _BESIDE = 0.8, 0.9, 0.9
 _PLACED = 0.35  # mean confidence of inner points; of drawn renders, points with less were off the face
+_PLACED_BESIDE = 0.6  # of that of the face whose points are surest
 _OVERLAP = 0.7  # radii between the middles of faces that cannot both be
 _SAME = 0.15  # radii between the points of what would end as one face
 
@@ -71,7 +72,9 @@ def find_faces(grey: np.ndarray, parts: DetectorParts) -> list[FoundFace]:
         if chance >= least and not any(_overlap(candidate, other) for _, other in kept):
             kept.append((chance, candidate))
     faces = [_finished(grey, candidate, chance, parts) for chance, candidate in kept]
-    placed = [face for face in faces if face.confidence[INNER].mean() >= _PLACED]
+    sure = [float(face.confidence[INNER].mean()) for face in faces]
+    least_sure = max(_PLACED, _PLACED_BESIDE * max(sure, default=0.0))
+    placed = [face for face, mean in zip(faces, sure, strict=True) if mean >= least_sure]
     return sorted(placed, key=lambda face: -box_of(face.points)[2])
 
 
