@@ -110,6 +110,7 @@ def test_a_small_cascade_learns_and_is_the_same_twice(few, monkeypatch):
     assert len(nose.rows) == 9 and len(mouth.rows) == 20 and after < before
 
 
+@pytest.mark.slow
 def test_the_whole_course_goes_on_where_it_was_stopped(few, tmp_path, monkeypatch):
     """A toy: every step runs, and one that is read from the cache gives the same bytes."""
     import build_detector

@@ -8,10 +8,10 @@ from toongeo.model import MorphableModel
 
 __all__ = ["motion_shares"]
 
-# Of an expression's largest motion: up to the first a vertex is still, from the second it moves freely. On the template
-# these are 0.1 mm and 1.3 mm of an opening jaw: a band of some ten millimetres in which drift fades out unseen. Chosen
-# on 14, 21 and bad_guy by crossings in all 46: a band thrice as wide did no better (`benchmarks/mouths.py`).
-_STILL, _FREE = 0.002, 0.032
+# Of an expression's largest motion: up to the first a vertex is still, from the second it moves freely. Chosen by
+# crossings of the skin around the eyes and the nose on bad_guy, beethoven, blue_girl, manga_girl and the blonde girl:
+# drift that ends more steeply folds the cheeks of the first.
+_STILL, _FREE = 0.002, 0.2
 
 
 @lru_cache(maxsize=4)

@@ -152,6 +152,7 @@ def test_a_model_without_eyes_will_do(model):
     assert not rig.deltas[:, unused].any() and rig.report.partnered > 0.9
 
 
+@pytest.mark.slow
 def test_a_head_far_from_the_origin_keeps_its_rig(model):
     near = rig_mesh(model.mean, model.faces, model.landmarks)
     place = np.array([3e8, 5e9, 1e5])  # mm: a scan in the coordinates of a map
