@@ -59,6 +59,7 @@ def test_noise_is_a_number_or_auto(tmp_path, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_make_crops_snaps_and_refines(tmp_path, capsys):
     whole, face = tmp_path / "whole.ply", tmp_path / "face.ply"
     arguments = ["make", str(PICTURE), "--landmarks", str(POINTS), "--texture-size", "64"]

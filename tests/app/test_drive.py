@@ -249,6 +249,7 @@ def actor(performance, tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_a_film_drives(glb, actor, performance, tmp_path, capsys):
     """Weights that are read off a film of another size and rate, and played again."""
     table = tmp_path / "take.csv"

@@ -108,6 +108,7 @@ def test_landmarks_of_the_mean_face_give_the_mean_face(face_space):
     assert np.sqrt((off**2).sum(1).mean()) < 3.0
 
 
+@pytest.mark.slow
 def test_a_face_of_the_space_is_recovered_closer_than_a_3dmm_can(face_space):
     """At w = 1.5: landmarks of a face that is more extreme than its shapes."""
     model, space = face_space.model, face_space.space
