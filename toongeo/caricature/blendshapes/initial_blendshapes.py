@@ -142,7 +142,7 @@ def _reconstructed(source: CaricatureFit, w: Floats, at: NDArray[np.int64], targ
     space, vertices = source.space, source.vertices.copy()
     vertices[space.vertices] += space.space.vertices(w) - space.space.vertices(source.w)
     start = replace(source, w=w, vertices=vertices, landmark_vertices=at)
-    options = CaricatureOptions(tuck=False)
+    options = CaricatureOptions(tuck=False, noise=0)  # these landmarks are made, not measured
     return fit_caricature(
         None, target + source_offsets(source, at), space=space, iterations=1, start=start, options=options
     ).vertices[space.vertices]
