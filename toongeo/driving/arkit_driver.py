@@ -10,12 +10,11 @@ from numpy.typing import ArrayLike
 
 from toongeo.arrays import Floats
 from toongeo.driving.read_live_link import read_live_link, scheme_matrix
+from toongeo.driving.table.unit_weights import LARGEST
 from toongeo.driving.take import Take
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 __all__ = ["ArkitDriver"]
-
-_MOST = 5.0  # no expression is meant to be played five times
 
 
 class ArkitDriver:
@@ -80,6 +79,6 @@ class ArkitDriver:
             got = f"{frames[frame, column]} for {self.columns[column]} in frame {frame}"
             raise ValueError(f"recording: expected finite weights, got {got}")
         most = np.abs(frames).max(initial=0.0)
-        if most > _MOST:
+        if most > LARGEST:
             raise ValueError(f"recording: expected weights of 0 to 1, got up to {most:.4g}; divide percent by 100")
         return Take.of_frames(frames @ scheme_matrix("arkit", self.columns), 60.0 if fps is None else fps)

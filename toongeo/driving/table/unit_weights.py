@@ -6,10 +6,9 @@ import numpy as np
 
 from toongeo.arrays import Floats
 
-__all__ = ["unit_weights"]
+__all__ = ["LARGEST", "unit_weights"]
 
-_PERCENT = 5.0  # no expression is meant to be played five times; Unity, Maya and Audio2Face write 0..100
-_MOST = 500.0  # five times, in percent
+LARGEST = 5.0  # no expression is meant to be played five times; Unity, Maya and Audio2Face write 0..100
 
 
 def unit_weights(weights: Floats, what: str) -> tuple[Floats, tuple[str, ...]]:
@@ -21,8 +20,8 @@ def unit_weights(weights: Floats, what: str) -> tuple[Floats, tuple[str, ...]]:
         If they are too large for percent.
     """
     most = float(np.abs(weights).max(initial=0.0))
-    if most <= _PERCENT:
+    if most <= LARGEST:
         return weights, ()
-    if most > _MOST:
+    if most > 100 * LARGEST:
         raise ValueError(f"{what}: expected weights of 0 to 1, or percent, got up to {most:.4g}")
     return weights / 100, (f"weights of up to {most:.4g} were taken for percent",)
