@@ -18,6 +18,7 @@ def test_weights_of_a_film_are_nearer_to_the_truth_than_none(performance, weight
     seen, acted = ~performance.hidden, performance.weights.any(axis=0)
     truth = performance.weights[seen]
     found = weights[seen, :46]
+    # 0.45 is what it reaches: on a short film of a small face the found points are the limit.
     assert rms(found[:, acted] - truth[:, acted]) < 0.5 * rms(truth[:, acted])
     assert rms(found[:, ~acted]) < 0.1
     assert (weights >= 0).all() and (weights <= 1).all() and (weights[:, 46:] == 0).all()
