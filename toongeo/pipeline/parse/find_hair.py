@@ -14,12 +14,14 @@ from toongeo.io.check_image import check_image
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.completed_landmarks import completed_landmarks
+from toongeo.pipeline.parse.face_zones import face_zones
 from toongeo.pipeline.parse.given_hair import given_hair
 from toongeo.pipeline.parse.hair.hair_model import hair_model
 from toongeo.pipeline.parse.hair.hair_trust import distrust
 from toongeo.pipeline.parse.hair.hair_view import hair_view
 from toongeo.pipeline.parse.hair.head_zones import head_zones
 from toongeo.pipeline.parse.hair.segment_hair import segment_hair
+from toongeo.pipeline.parse.head_and_skin import head_and_skin
 from toongeo.pipeline.parse.masks import signed_distance
 from toongeo.pipeline.parse.working_view import WorkingView
 from toongeo.protocols import FittedFace, HairMask
@@ -88,7 +90,8 @@ def find_hair(
     points = completed_landmarks(given, face)
     view = hair_view(img, face)
     with one_thread():
-        found = segment_hair(view, head_zones(view, points, face), hair_model())
+        cut = head_and_skin(view, face_zones(view, points, face))
+        found = segment_hair(view, head_zones(view, points, face), cut, hair_model())
     seen = found.measures.inside >= _LEAST
     hair, hat = (_enlarged(view, part & seen, img.shape) for part in (found.hair, found.hat))
     alpha = np.zeros(img.shape[:2], np.float32)
