@@ -132,7 +132,7 @@ def chosen(cases: list[Case]) -> dict[str, tuple[float, float]]:
     best, limits = (-1, 0.0), {}
     grid = np.arange(1.4, 1.81, 0.02), np.arange(0.7, 0.96, 0.05), (0.0, 0.8, 0.9, 0.95)
     for certainty, agreement, outlined in product(*grid):
-        trial = {"certainty": (certainty, 2.0), "agreement": (agreement, 1.0), "outlined": (outlined, 1.0)}
+        trial = {"certainty": (certainty, 2.2), "agreement": (agreement, 1.0), "outlined": (outlined, 1.0)}
         kept = [case for case in cases if trusted_by(case, trial)]
         wrong = [case for case in kept if case.found < GOOD or not case.hairy]
         score = len(kept) - 5 * len(wrong), float(certainty + agreement + outlined)

@@ -125,10 +125,10 @@ def _change(lab: Singles) -> Singles:
     return np.sqrt((slopes[0] ** 2 + slopes[1] ** 2).sum(axis=2)).astype(np.float32)
 
 
-# Name of the measure, least and largest value that is trusted, what is said otherwise. Hat, certainty and what head less
-# skin is worth were set on CHOOSING of benchmarks/pictures.py with fresh renders in sight: half of their hats pass for
-# hair, and hair reaches 0.207. Hair that hangs has 0.96 and more on CHOOSING; a collar that was known to pass for hair
-# has 0.16. The limits of agreement and inside only keep out what is good in one of them alone.
+# Name of the measure, least and largest value that is trusted, what is said otherwise. Hat, certainty and what head
+# less skin is worth were set on CHOOSING of benchmarks/pictures.py with fresh renders in sight: half of their hats pass
+# for hair, and hair reaches 0.207. Hair that hangs has 0.96 and more on CHOOSING; a collar that was known to pass for
+# hair has 0.16. The limits of agreement and inside only keep out what is good in one of them alone.
 RULES = (
     ("area", 0.08, 9.0, "there is hardly any hair"),
     ("hat", 0.0, 0.21, "a hat covers the hair"),
