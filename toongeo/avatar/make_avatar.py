@@ -57,6 +57,7 @@ def make_avatar(
     landmarks: np.ndarray | None = None,
     *,
     model: MorphableModel | None = None,
+    fit: FaceFit | None = None,
     parser: FaceParser | None = None,
     noise: Noise = "auto",
     snap: bool = False,
@@ -82,6 +83,9 @@ def make_avatar(
     model : MorphableModel, optional
         :func:`toongeo.default_model` unless another is given. What it does not have (eyeballs, teeth, expressions,
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
+    fit : FaceFit, optional
+        To these landmarks, as one of :func:`toongeo.fit_3dmm_together`: it is kept, with its identity and
+        model. Not with ``snap`` or ``photometric``, which fit again.
     parser : FaceParser, optional
         Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
     noise : "auto" or float
@@ -128,7 +132,7 @@ def make_avatar(
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, no face was found where none are
-        given, or method, rig, hair or noise is unknown.
+        given, method, rig, hair or noise is unknown, or a fit comes without landmarks or with what would change it.
     """
     align = _ALIGNERS.get(method)
     if align is None:
@@ -142,6 +146,8 @@ def make_avatar(
             f"hair: expected True, False or a HairModeler, got {type(hair).__name__}; masks are hair_mask="
         )
     check_noise(noise)
+    if fit is not None and (landmarks is None or snap or photometric or not isinstance(scheme, str)):
+        raise ValueError("fit: expected landmarks by name with it, and neither snap nor photometric, which fit again")
     clock = _Clock(progress)
 
     clock.start("fit")
@@ -149,17 +155,17 @@ def make_avatar(
     if landmarks is None:
         found = detect_landmarks(img)
         landmarks, scheme, doubts = found.points, "ibug68", detection_warnings(found)
-    model = model or default_model()
+    kept, model = fit, fit.model if fit is not None else model or default_model()
     if isinstance(scheme, str):
         landmarks = ibug_landmarks(landmarks, scheme)
-        fit = fit_3dmm(img, landmarks, model=model)
+        fit = kept or fit_3dmm(img, landmarks, model=model)
     else:
         fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
         landmarks = fit.project(fit.vertices[fit.landmark_vertices])
     given, cleaned = landmarks, denoise_landmarks(fit, landmarks, noise)
     if cleaned.change:
         landmarks = cleaned.points
-        fit = fit_3dmm(img, landmarks, model=model)
+        fit = kept or fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
     drawn, faults = read_mask(hair_mask, img.shape)
     parse = parse_face(img, landmarks, fit, parser=parser, hair_mask=drawn)
