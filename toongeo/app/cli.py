@@ -39,20 +39,24 @@ def main(arguments: list[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     try:
         options.run(options)
-    except KeyboardInterrupt:
-        code, line = _INTERRUPTED, None
-    except UnsureLandmarksError as error:
+    except (Exception, KeyboardInterrupt) as error:
+        if options.debug:
+            traceback.print_exception(error)
+        return _told(error, options)
+    return 0
+
+
+def _told(error: BaseException, options: argparse.Namespace) -> int:
+    """Say what went wrong; the exit code."""
+    if isinstance(error, KeyboardInterrupt):
+        return _INTERRUPTED
+    if isinstance(error, UnsureLandmarksError):
         code, line = 3, str(error)
-    except (ValueError, OSError, RuntimeError, ImportError) as error:
+    elif isinstance(error, ValueError | OSError | RuntimeError | ImportError):
         code, line = 2, in_flags(_words(error), options)
-    except Exception as error:
-        code, line = 1, f"{type(error).__name__}: {error} (a fault of toongeo; --debug shows where)"
     else:
-        return 0
-    if options.debug:
-        traceback.print_exc()
-    if line is not None:
-        print(f"toongeo: {line}", file=sys.stderr)
+        code, line = 1, f"{type(error).__name__}: {error} (a fault of toongeo; --debug shows where)"
+    print(f"toongeo: {line}", file=sys.stderr)
     return code
 
 
