@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from toongeo.io import Scene, SceneMesh, encode_glb, glb_scene, read_glb, split_seams, write_glb
 
@@ -126,10 +127,49 @@ def test_a_checksum_that_is_none_is_not_intact(tmp_path, scene):
     assert not read_glb(tmp_path / "a.glb").intact
 
 
-def test_a_root_stands_above_all(tmp_path, scene):
-    document = read(tmp_path, scene, root="Armature").json
+def places(nodes, node, above):
+    """Where each node below is, m: a slow reference for what a player makes of translations and rotations."""
+    entry = nodes[node]
+    local = np.eye(4)
+    local[:3, :3] = Rotation.from_quat(entry.get("rotation", [0, 0, 0, 1])).as_matrix()
+    local[:3, 3] = entry.get("translation", [0, 0, 0])
+    world = above @ local
+    found = {entry["name"]: world[:3, 3]}
+    for child in entry.get("children", ()):
+        found |= places(nodes, child, world)
+    return found
+
+
+def test_a_body_stands_on_the_ground_in_t_pose(tmp_path, scene):
+    document = read(tmp_path, scene, body="mixamo").json
     (root,) = document["scenes"][0]["nodes"]
-    assert document["nodes"][root] == {"name": "Armature", "children": list(range(len(scene.meshes)))}
+    assert document["nodes"][root]["name"] == "Armature"
+    found = places(document["nodes"], root, np.eye(4))
+    assert len(found) == 67 + len(scene.meshes) + 2 == len(document["nodes"])
+    assert abs(found["LeftToe_End"][1]) < 0.1 and 1.5 < found["Head"][1] < 1.6
+    for name in ("Hips", "Neck", "Head"):
+        assert found[name][0] == 0
+    left, right = found["LeftHandMiddle4"], found["RightHandMiddle4"]
+    np.testing.assert_allclose(left * [-1, 1, 1], right, atol=1e-9)
+    assert left[0] > 0.7 and abs(left[1] - found["LeftArm"][1]) < 1e-9
+    assert found["LeftToe_End"][2] > found["LeftFoot"][2] + 0.05
+
+
+def test_meshes_keep_their_places_on_a_body(tmp_path, scene):
+    """All of the scene is moved by the same way, with the bone of the head, and its clip plays on."""
+    plain, worn = read(tmp_path, scene).json, read(tmp_path, scene, body="mixamo").json
+    free = {}
+    for node in plain["scenes"][0]["nodes"]:
+        free |= places(plain["nodes"], node, np.eye(4))
+    found = places(worn["nodes"], worn["scenes"][0]["nodes"][0], np.eye(4))
+    for mesh in scene.meshes:
+        np.testing.assert_allclose(found[mesh.name] - free[mesh.name], found["Head"] - [0, -0.085, -0.08], atol=1e-9)
+    assert worn["animations"] == plain["animations"]
+
+
+def test_an_unknown_body_is_refused(scene):
+    with pytest.raises(ValueError, match="body: expected 'mixamo' or None, got 'robot'"):
+        encode_glb(scene, body="robot")
 
 
 def test_an_unknown_picture_is_refused(tmp_path, scene):

@@ -216,7 +216,7 @@ class Avatar(AvatarStages):
             Of the targets: the rig's 46 and 8 directions of gaze; exactly the 52 of ARKit; or what players look for
             that speak by Oculus visemes, such as TalkingHead: those 52, 15 ``viseme_*``, ``mouthOpen``,
             ``mouthSmile``, ``eyesClosed``, ``eyesLookUp`` and ``eyesLookDown``, in meshes ``Wolf3D_Head``,
-            ``Wolf3D_Teeth``, ... below a node ``Armature``, which has no bones.
+            ``Wolf3D_Teeth``, ... on the head of a body of 67 bones below a node ``Armature``.
         sparse : bool
             False: every target stores every vertex, for readers that know no sparse accessors.
         loadable : bool

@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from toongeo.avatar.crop_faces import Crop
-from toongeo.avatar.export_targets import PLAYER_MESHES, PLAYER_ROOT, Names, export_targets, renamed_scene
+from toongeo.avatar.export_targets import PLAYER_MESHES, Names, export_targets, renamed_scene
 from toongeo.avatar.scene import avatar_scene, demo_clip, own_shapes, uv_colours, weight_clip
 from toongeo.avatar.stages import AvatarStages
 from toongeo.avatar.state import encode_state
@@ -98,7 +98,7 @@ def _write_glb(
         quantize=quantize,
         picture=texture or "png",
         sparse=sparse,
-        root=PLAYER_ROOT if player else None,
+        body="mixamo" if player else None,
         attachment=avatar_attachment(avatar, coarse=quantize) if loadable and whole else None,
     )
 

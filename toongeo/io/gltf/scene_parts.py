@@ -36,7 +36,6 @@ class GlbOptions:
     quantize: bool = False
     picture: Picture = "png"
     sparse: bool = True
-    root: str | None = None
 
 
 def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
@@ -66,8 +65,6 @@ def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
         if mesh.parent is not None:
             builder.json["nodes"][names.index(mesh.parent)].setdefault("children", []).append(child)
     nodes = [node for node, mesh in enumerate(scene.meshes) if mesh.parent is None]
-    if options.root is not None:
-        nodes = [builder.add("nodes", name=options.root, children=nodes)]
     builder.json["scenes"] = [{"nodes": nodes}]
     builder.json["scene"] = 0
     if scene.animation is not None:
