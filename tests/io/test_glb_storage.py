@@ -167,6 +167,35 @@ def test_meshes_keep_their_places_on_a_body(tmp_path, scene):
     assert worn["animations"] == plain["animations"]
 
 
+def test_a_head_turns_about_its_neck(tmp_path, scene, node):
+    """Two nodes above the meshes, whose own entries are as before; the file is read back as it was."""
+    angle = 0.5 * np.sin(scene.animation.times)
+    turns = np.stack([0 * angle, np.sin(angle / 2), 0 * angle, np.cos(angle / 2)], axis=1)
+    turning = replace(scene.animation, turns=turns, neck=np.array([0.0, -85, -80]))
+    plain, document = read(tmp_path, scene), read(tmp_path, replace(scene, animation=turning))
+    count = len(scene.meshes)
+    assert document.json["nodes"][:count] == plain.json["nodes"] and len(document.json["nodes"]) == count + 2
+    (root,) = document.json["scenes"][0]["nodes"]
+    found, free = places(document.json["nodes"], root, np.eye(4)), {}
+    for top in plain.json["scenes"][0]["nodes"]:
+        free |= places(plain.json["nodes"], top, np.eye(4))
+    for mesh in scene.meshes:
+        np.testing.assert_allclose(found[mesh.name], free[mesh.name], atol=1e-9)
+    again = glb_scene(document)
+    np.testing.assert_allclose(again.animation.turns, turns, atol=1e-6)
+    np.testing.assert_allclose(again.animation.neck, [0, -85, -80], atol=1e-4)
+    assert encode_glb(again, tolerance_mm=0) == encode_glb(
+        glb_scene(read(tmp_path, again, tolerance_mm=0)), tolerance_mm=0
+    )
+    write_glb(tmp_path / "a.glb", replace(scene, animation=turning))
+    (verdict,) = node("validate.mjs", tmp_path / "a.glb")
+    assert (verdict["errors"], verdict["warnings"]) == (0, 0)
+    with pytest.raises(ValueError, match="turns, neck: expected both or neither"):
+        replace(scene.animation, turns=turns)
+    with pytest.raises(ValueError, match="turns: expected quaternions of unit length"):
+        replace(turning, turns=2 * turns)
+
+
 def test_an_unknown_body_is_refused(scene):
     with pytest.raises(ValueError, match="body: expected 'mixamo' or None, got 'robot'"):
         encode_glb(scene, body="robot")

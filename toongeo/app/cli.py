@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from toongeo import __version__
 from toongeo.app.bench.commands import add_bench
+from toongeo.app.performance_commands import add_performances
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
 __all__ = ["main"]
@@ -73,7 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
     _add_landmarks_editor(commands)
-    _add_drive(commands)
+    add_performances(commands)
     _add_serve(commands)
     view = commands.add_parser("view", help="show an avatar in the browser")
     view.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb")
@@ -114,23 +115,6 @@ def _add_landmarks(command: argparse.ArgumentParser) -> None:
     which = "which face, in the file or, by size, in the picture (default 0)"
     command.add_argument("--face", type=int, default=0, metavar="N", help=which)
     command.add_argument("--accept", action="store_true", help="go on with landmarks that were found but are not sure")
-
-
-def _add_drive(commands: Any) -> None:
-    drive = commands.add_parser("drive", help="play a performance on an avatar: a video, an animated GLB, or a table")
-    drive.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
-    source = drive.add_mutually_exclusive_group(required=True)
-    source.add_argument("--weights", type=Path, metavar="TAKE", help="Live Link Face .csv, or .npy (frames, 52 or 54)")
-    source.add_argument("--landmarks", type=Path, metavar="TAKE", help=".npy .csv .json .xml, the first frame neutral")
-    source.add_argument("--video", type=Path, metavar="FILM", help="of an actor whose face is followed: .mp4, .mov ...")
-    drive.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4, .glb, or .csv of Live Link Face"
-    )
-    drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
-    drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
-    drive.add_argument("--scheme", default="auto", metavar="NAME", help=_SCHEME)
-    drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
-    drive.set_defaults(run=_drive)
 
 
 def _add_serve(commands: Any) -> None:
@@ -211,14 +195,6 @@ def _landmarks(options: argparse.Namespace) -> None:
         port=options.port,
         show=not options.no_open,
     )
-
-
-def _drive(options: argparse.Namespace) -> None:
-    from toongeo.app.drive import drive
-    from toongeo.app.read_take import TakeSource
-
-    source = TakeSource(options.weights, options.landmarks, options.video, options.take_fps, options.scheme)
-    drive(options.avatar, options.output, source, size=options.size, fps=options.fps)
 
 
 def _serve(options: argparse.Namespace) -> None:

@@ -1,10 +1,13 @@
 """The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
 from toongeo.driving.arkit_driver import ArkitDriver as ArkitDriver
+from toongeo.driving.head_turn import head_quaternions as head_quaternions
+from toongeo.driving.head_turn import head_rotation as head_rotation
 from toongeo.driving.landmark_driver import LandmarkDriver as LandmarkDriver
 from toongeo.driving.landmark_driver import LiveLandmarks as LiveLandmarks
 from toongeo.driving.landmark_rig import LandmarkRig as LandmarkRig
 from toongeo.driving.live_video import LiveVideo as LiveVideo
+from toongeo.driving.puppet.avatar_puppet import AvatarPuppet as AvatarPuppet
 from toongeo.driving.puppet.scene_puppet import ScenePuppet as ScenePuppet
 from toongeo.driving.puppet.target_columns import target_columns as target_columns
 from toongeo.driving.read_live_link import read_live_link as read_live_link

@@ -33,6 +33,7 @@ from toongeo.io.split_seams import split_seams as split_seams
 from toongeo.io.spring_chains import SpringChains as SpringChains
 from toongeo.io.trimesh_scene import trimesh_scene as trimesh_scene
 from toongeo.io.writers.animate_glb import animate_glb as animate_glb
+from toongeo.io.writers.animate_glb import head_bone as head_bone
 from toongeo.io.writers.animate_glb import morph_targets as morph_targets
 from toongeo.io.writers.vrm_meta import VrmMeta as VrmMeta
 from toongeo.io.writers.write_glb import write_glb as write_glb
