@@ -7,13 +7,23 @@ from pathlib import Path
 from toongeo.app.check_output import check_output
 from toongeo.app.read_take import TakeSource
 from toongeo.app.video.film_options import FilmOptions
-from toongeo.app.video.pyav_adapter import has_pyav, has_sound
 from toongeo.app.video.sound import Sound
 from toongeo.app.video.write_film import write_film
 from toongeo.app.video.write_video import VIDEO_SUFFIXES
 from toongeo.avatar.load_avatar import load_avatar
 from toongeo.driving import Take, head_quaternions, target_columns, write_live_link
-from toongeo.io import GlbDocument, Video, animate_glb, glb_scene, head_bone, morph_targets, read_glb, read_video
+from toongeo.io import (
+    GlbDocument,
+    Video,
+    animate_glb,
+    glb_scene,
+    has_pyav,
+    has_sound,
+    head_bone,
+    morph_targets,
+    read_glb,
+    read_video,
+)
 
 __all__ = ["check_performance", "drive", "perform"]
 

@@ -10,7 +10,7 @@ _OUTPUTS = ".mp4, .webm, .glb, or .csv of Live Link Face"
 
 
 def add_performances(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    """Add ``drive`` to the commands of ``toongeo``."""
+    """Add ``drive`` and ``speak`` to the commands of ``toongeo``."""
     drive = commands.add_parser("drive", help="play a performance on an avatar: a video, an animated GLB, or a table")
     drive.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
     source = drive.add_mutually_exclusive_group(required=True)
@@ -26,6 +26,18 @@ def add_performances(commands: "argparse._SubParsersAction[argparse.ArgumentPars
     drive.add_argument("--sound", type=Path, metavar="FILE", help="for a video (default: that of the film)")
     _add_film(drive)
     drive.set_defaults(run=_drive)
+    _add_speak(commands)
+
+
+def _add_speak(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    speak = commands.add_parser("speak", help="let an avatar speak, by timings of visemes or a sound")
+    speak.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
+    about = "Rhubarb's .json or .tsv, TalkingHead's .json, or Azure's viseme events"
+    speak.add_argument("--visemes", type=Path, metavar="FILE", help=about)
+    about = "heard in a video; without visemes the mouth moves with it. .wav, or more with the extra video"
+    speak.add_argument("--audio", type=Path, metavar="FILE", help=about)
+    _add_film(speak)
+    speak.set_defaults(run=_speak)
 
 
 def _add_film(command: argparse.ArgumentParser) -> None:
@@ -52,3 +64,10 @@ def _drive(options: argparse.Namespace) -> None:
         options.weights, options.landmarks, options.video, options.take_fps, options.scheme, options.gaps
     )
     drive(options.avatar, options.output, source, _options(options, actor=options.actor), sound=options.sound)
+
+
+def _speak(options: argparse.Namespace) -> None:
+    from toongeo.app.speak import speak
+
+    film = _options(options)
+    speak(options.avatar, options.output, visemes=options.visemes, audio=options.audio, options=film)

@@ -12,6 +12,9 @@ from toongeo.driving.puppet.scene_puppet import ScenePuppet as ScenePuppet
 from toongeo.driving.puppet.target_columns import target_columns as target_columns
 from toongeo.driving.read_live_link import read_live_link as read_live_link
 from toongeo.driving.send_weights import send_weights as send_weights
+from toongeo.driving.speak import speak as speak
+from toongeo.driving.speech.read_visemes import read_visemes as read_visemes
+from toongeo.driving.speech.viseme_track import VisemeTrack as VisemeTrack
 from toongeo.driving.table.unit_weights import unit_weights as unit_weights
 from toongeo.driving.take import Take as Take
 from toongeo.driving.video_driver import VideoDriver as VideoDriver

@@ -10,8 +10,9 @@ import numpy as np
 from tqdm import tqdm
 
 from toongeo.app.video.opencv_encoder import OpencvEncoder
-from toongeo.app.video.pyav_adapter import PyavEncoder, has_pyav
+from toongeo.app.video.pyav_encoder import PyavEncoder
 from toongeo.app.video.sound import Sound
+from toongeo.io import has_pyav
 
 __all__ = ["VIDEO_SUFFIXES", "check_video", "write_video"]
 

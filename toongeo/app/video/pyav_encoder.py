@@ -1,9 +1,7 @@
-"""The package ``av`` (PyAV), if it is installed: the only place that uses it."""
+"""Videos with sound, by PyAV."""
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -12,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from toongeo.app.video.sound import Sound
+from toongeo.io import load_pyav
 
-__all__ = ["PyavEncoder", "has_pyav", "has_sound"]
+__all__ = ["PyavEncoder"]
 
 # By suffix: codecs of picture and sound, and options of the first. Constant quality at which drawings show no blocks;
 # presets that take a few ms a picture of 512 px.
@@ -23,27 +22,6 @@ _CODECS: dict[str, tuple[str, str, dict[str, str]]] = {
 }
 _SOUND_RATE = 48000  # Hz, of sound that is encoded anew: one that Opus knows
 _FINEST = 1001 * 240  # denominator of frame rates, of which 30000/1001 is one
-
-
-def _module() -> Any:
-    return importlib.import_module("av")
-
-
-def has_pyav() -> bool:
-    """Whether it is installed."""
-    return importlib.util.find_spec("av") is not None
-
-
-def has_sound(path: Path) -> bool:
-    """Whether a file has a sound that can be read; False too if PyAV is missing."""
-    if not has_pyav():
-        return False
-    av = _module()
-    try:
-        with av.open(str(path)) as file:
-            return bool(file.streams.audio)
-    except av.FFmpegError:
-        return False
 
 
 class PyavEncoder:
@@ -58,7 +36,7 @@ class PyavEncoder:
     """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: float, sound: Sound | None = None) -> None:
-        av = _module()
+        av = load_pyav("a video with sound")
         codec, self._sound_codec, options = _CODECS[path.suffix]
         self._av, self._sound, self._count = av, sound, 0
         self._rate = Fraction(fps).limit_denominator(_FINEST)
