@@ -24,6 +24,7 @@ from toongeo.driving import LiveVideo as LiveVideo
 from toongeo.driving import Take as Take
 from toongeo.driving import VideoDriver as VideoDriver
 from toongeo.driving import send_weights as send_weights
+from toongeo.driving import speak as speak
 from toongeo.editing import ClassicalTextureGenerator as ClassicalTextureGenerator
 from toongeo.editing import ExpressionEditor as ExpressionEditor
 from toongeo.editing import attention_map as attention_map

@@ -13,7 +13,7 @@ from toongeo.app.commands.edit_command import add_edit
 from toongeo.app.commands.flags import in_flags, know_flags
 from toongeo.app.commands.make_command import add_make
 from toongeo.app.commands.number_types import port
-from toongeo.app.commands.picture_arguments import SCHEME
+from toongeo.app.commands.performance_commands import add_performances
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
 __all__ = ["main"]
@@ -77,7 +77,7 @@ def _parser() -> argparse.ArgumentParser:
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
     _add_landmarks_editor(commands)
-    _add_drive(commands)
+    add_performances(commands)
     _add_serve(commands)
     view = commands.add_parser("view", help="show an avatar in the browser")
     view.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb")
@@ -123,23 +123,6 @@ def _add_landmarks_editor(commands: Any) -> None:
     editor.set_defaults(run=_landmarks)
 
 
-def _add_drive(commands: Any) -> None:
-    drive = commands.add_parser("drive", help="play a performance on an avatar: a video, an animated GLB, or a table")
-    drive.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
-    source = drive.add_mutually_exclusive_group(required=True)
-    source.add_argument("--weights", type=Path, metavar="TAKE", help="Live Link Face .csv, or .npy (frames, 52 or 54)")
-    source.add_argument("--landmarks", type=Path, metavar="TAKE", help=".npy .csv .json .xml, the first frame neutral")
-    source.add_argument("--video", type=Path, metavar="FILM", help="of an actor whose face is followed: .mp4, .mov ...")
-    drive.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4, .glb, or .csv of Live Link Face"
-    )
-    drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
-    drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
-    drive.add_argument("--scheme", default="auto", metavar="NAME", help=SCHEME)
-    drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
-    drive.set_defaults(run=_drive, also={"path": "AVATAR"})
-
-
 def _add_serve(commands: Any) -> None:
     serve = commands.add_parser("serve", help="show an avatar that moves while weights come, on this computer only")
     serve.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb")
@@ -178,14 +161,6 @@ def _landmarks(options: argparse.Namespace) -> None:
         port=options.port,
         show=not options.no_open,
     )
-
-
-def _drive(options: argparse.Namespace) -> None:
-    from toongeo.app.drive import drive
-    from toongeo.app.read_take import TakeSource
-
-    source = TakeSource(options.weights, options.landmarks, options.video, options.take_fps, options.scheme)
-    drive(options.avatar, options.output, source, size=options.size, fps=options.fps)
 
 
 def _serve(options: argparse.Namespace) -> None:
