@@ -19,7 +19,6 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.model.loaders import layouts
 from tests.model.loaders.mutations import mutated
-
 from toongeo.model import load_model, save_model
 
 SLOW = 5.0  # seconds

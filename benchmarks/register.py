@@ -27,9 +27,9 @@ from scipy.spatial.transform import Rotation
 
 from toongeo import MorphableModel, default_model, nonrigid_register, rig_mesh
 from toongeo.geometry.rotations.similarity import similarity
+from toongeo.model.anatomy.hidden_vertices import hidden_vertices
 from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
-from toongeo.model.anatomy.hidden_vertices import hidden_vertices
 from toongeo.pipeline.rig.foreign.register_face import register_face
 
 SCALE, TURN, SHIFT = 0.37, Rotation.from_euler("xyz", [20, -50, 130], degrees=True).as_matrix(), np.array([5.0, 6, 7])

@@ -84,10 +84,12 @@ def bfm2009(face, path):
 def face3d(face, path):
     """face3d's BFM.mat: a struct of the same, with expressions, landmarks and the mouth; triangles as columns."""
     model = {
-        "shapeMU": 1000 * (face.mean - 1.0).reshape(-1, 1), "shapePC": _columns(face.identity), "expMU": np.full((3 * N, 1), 1000.0),
-        "shapeEV": np.full((K, 1), 1000.0), "expPC": _columns(face.expression), "expEV": np.full((E, 1), 1000.0),
+        "shapeMU": 1000 * (face.mean - 1.0).reshape(-1, 1), "shapePC": _columns(face.identity),
+        "expMU": np.full((3 * N, 1), 1000.0), "shapeEV": np.full((K, 1), 1000.0),
+        "expPC": _columns(face.expression), "expEV": np.full((E, 1), 1000.0),
         "texMU": 255 * face.colour.reshape(-1, 1), "texPC": _columns(face.albedo), "texEV": np.full((A, 1), 255.0),
-        "tri": (face.faces[10:, ::-1] + 1).T.astype(np.int32), "tri_mouth": (face.faces[:10, ::-1] + 1).T.astype(np.int32),
+        "tri": (face.faces[10:, ::-1] + 1).T.astype(np.int32),
+        "tri_mouth": (face.faces[:10, ::-1] + 1).T.astype(np.int32),
         "kpt_ind": (face.landmarks + 1)[None].astype(np.int32),
     }  # fmt: skip
     path.write_bytes(_mat({"model": model}))
@@ -212,8 +214,9 @@ def facescape(face, path):
     core[:, 1:, 0] += _columns(face.expression) / -0.034
     path.write_bytes(
         _npz(
-            shape_bm_core=core, fv_indices=(face.faces + 1).astype(np.int32), ft_indices=(face.faces + 1).astype(np.int32),
-            texcoords=face.uv, lm_list_v16=face.landmarks, id_mean=np.r_[-0.034, np.zeros(K)],
+            shape_bm_core=core, fv_indices=(face.faces + 1).astype(np.int32),
+            ft_indices=(face.faces + 1).astype(np.int32), texcoords=face.uv,
+            lm_list_v16=face.landmarks, id_mean=np.r_[-0.034, np.zeros(K)],
             id_var=np.r_[0.0, np.full(K, 0.034**2)], sym_dict=np.array({1: 2}, object),
         )
     )  # fmt: skip
@@ -264,8 +267,8 @@ def eos(face, path):
     empty = matrix(np.zeros((0, 0))) * 3 + struct.pack("<Q", 0)
     path.write_bytes(
         struct.pack("<I", 1) + matrix(face.mean.reshape(-1, 1)) + matrix(_columns(face.identity) / lengths)
-        + matrix(lengths[:, None] ** 2) + struct.pack("<Q", len(face.faces)) + face.faces.astype("<i4").tobytes() + empty
-        + struct.pack("<Q", N) + (face.uv * [1, -1] + [0, 1]).astype("<f8").tobytes()
+        + matrix(lengths[:, None] ** 2) + struct.pack("<Q", len(face.faces)) + face.faces.astype("<i4").tobytes()
+        + empty + struct.pack("<Q", N) + (face.uv * [1, -1] + [0, 1]).astype("<f8").tobytes()
     )  # fmt: skip
     shapes = struct.pack("<Q", E)
     for k, shape in enumerate(face.expression):

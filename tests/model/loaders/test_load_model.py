@@ -153,8 +153,6 @@ def test_the_jaw_of_flame_turns(face, loaded):
     np.testing.assert_allclose(model.posed(pose={}), model.mean, atol=1e-9)
     assert model.expression_names[:3] == ("jawOpen", "jawLeft", "jawRight") and model.n_named == 3
     np.testing.assert_allclose(model.expression[0], model.posed(pose={"jaw": (0.35, 0, 0)}) - model.mean, atol=1e-4)
-    nod = model.posed(pose={"root": (0, 0.4, 0)})
-    np.testing.assert_allclose(np.ptp(np.linalg.norm(nod - nod.mean(0), axis=1)), np.ptp(np.linalg.norm(model.mean - model.mean.mean(0), axis=1)), atol=1e-6)  # fmt: skip
     with pytest.raises(ValueError, match="pose: expected joints root, neck, jaw"):
         model.posed(pose={"chin": (0, 0, 0)})
     with pytest.raises(ValueError, match="pose: expected a rotation vector"):
@@ -285,6 +283,6 @@ def test_what_is_no_model_is_refused(tmp_path):
         load_model(tmp_path / "a.txt", format="vrm")
     with pytest.raises(ValueError, match="ends in .npz"):
         save_model(None, tmp_path / "model.bin")
+    (tmp_path / "x.bin").write_bytes(b"")
     with pytest.raises(ValueError, match="landmarks: expected a table"):
-        (tmp_path / "x.bin").write_bytes(b"")
         load_model(tmp_path / "x.bin")

@@ -1,4 +1,4 @@
-"""Files of unknown origin: nothing is executed, nothing is unpacked without bounds, and all that is raised is ValueError."""
+"""Files of unknown origin: nothing is executed or unpacked without bounds, and all that is raised is ValueError."""
 
 import collections
 import os
@@ -77,7 +77,7 @@ def evil(mark, kind):
         "getattr": lambda: b"\x80\x04\x8c\x08builtins\x8c\x07getattr\x93.",
         "through numpy": lambda: b"cnumpy.testing._private.utils\nrunstring\n(S'x'\ntR.",
         "numpy's own loader": lambda: b"cnumpy\nload\n(S'x'\ntR.",
-        "dotted": lambda: b"\x80\x04\x8c\x05numpy\x8c\x0bndarray.dump\x93.",
+        "dotted": lambda: b"\x80\x04\x8c\x05numpy\x8c\x0cndarray.dump\x93.",
         "partial": lambda: pickle.dumps(collections.Counter),
         "persistent": lambda: b"Pid\n.",
         "registry": lambda: b"\x80\x02\x82\x01.",
@@ -159,7 +159,7 @@ def test_arrays_that_lie_about_their_size_are_refused(tmp_path, content, message
 
 
 def test_a_zip_bomb_is_not_unpacked(tmp_path):
-    size = 1 << 29
+    size = 1 << 27
     with (
         zipfile.ZipFile(tmp_path / "bomb.npz", "w", zipfile.ZIP_DEFLATED) as archive,
         archive.open("mean.npy", "w") as f,
@@ -168,7 +168,7 @@ def test_a_zip_bomb_is_not_unpacked(tmp_path):
         for _ in range(size >> 20):
             f.write(bytes(1 << 20))
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    with pytest.raises(ValueError, match="expected at most 100 times .* packed bytes, got 53687"):
+    with pytest.raises(ValueError, match="expected at most 100 times .* packed bytes, got 1342"):
         read_npz(tmp_path / "bomb.npz", ["mean"])
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 64 * 1024  # kB
 
@@ -204,8 +204,8 @@ def test_arrays_of_matlab_are_those_of_scipy(tmp_path):
             assert found[name].dtype == array.dtype
             np.testing.assert_array_equal(found[name], array)
         np.testing.assert_array_equal(found["s"]["x"], arrays["a"])
+    (tmp_path / "a.mat").write_bytes(b"MATLAB 7.3 MAT-file")
     with pytest.raises(ValueError, match="no header of MATLAB 5"):
-        (tmp_path / "a.mat").write_bytes(b"MATLAB 7.3 MAT-file")
         read_mat(tmp_path / "a.mat")
 
 
