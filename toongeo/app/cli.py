@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from toongeo import __version__
 from toongeo.app.bench.commands import add_bench
+from toongeo.app.models.commands import add_model
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
 __all__ = ["main"]
@@ -92,6 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     rig.add_argument("--texture", type=Path, metavar="IMAGE", help="picture for the mesh's texture coordinates")
     rig.set_defaults(run=_rig)
     add_bench(commands)
+    add_model(commands)
     return parser
 
 

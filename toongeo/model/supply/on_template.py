@@ -16,6 +16,7 @@ from toongeo.geometry import DeformationTransfer, vertex_normals
 from toongeo.geometry.carry_shapes import carry_shapes
 from toongeo.geometry.facing_surface import FacingSurface
 from toongeo.geometry.nonrigid_register import RegisteredMesh, nonrigid_register
+from toongeo.geometry.operators.adjacency import adjacency
 from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model.anatomy.hidden_vertices import hidden_vertices
 from toongeo.model.anatomy.parts import SIDES
@@ -28,11 +29,13 @@ from toongeo.model.face_prior import FacePrior
 from toongeo.model.ibug68 import INNER, PARTS
 from toongeo.model.mirrored_vertices import mirrored_vertices
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.model.supply.continued import continued
 
 __all__ = ["on_template"]
 
 _RIM_WEIGHT = 0.05  # of a landmark's: what lies between two of them on a rim is interpolated
 _LEAST_MATCHED = 0.5  # of the template's face: with less the two are not the same kind of surface
+_RIM_RINGS = 4  # of the template, about 20 mm on its scalp
 _STILL = 1e-3  # of the largest motion: what moves less in every expression is held
 
 
@@ -73,10 +76,11 @@ def on_template(model: MorphableModel, template: MorphableModel | None = None) -
     if not (template.has("landmarks", "expression") and template.landmarks.size == model.landmarks.size):
         raise ValueError("template: expected a model with landmarks and named expressions")
     registration = _registered(template, model)
-    mean = straighten_teeth(template, template.mean, registration.vertices)
+    mean = straighten_teeth(template, template.mean, _without_gaps(template, registration))
     outer = np.ones(len(model.mean), bool)
     shapes = np.concatenate([model.identity, model.expression])
-    carried, _ = carry_shapes(model.mean, model.faces, outer, shapes, mean, template.faces)
+    carried, partnered = carry_shapes(model.mean, model.faces, outer, shapes, mean, template.faces)
+    carried = continued(mean, template.faces, _well_inside(partnered, template), carried)
     identity, own = carried[: len(model.identity)], carried[len(model.identity) :]
     eyes = tuple(_eye(template, k, mean, identity) for k in range(len(template.eyes)))
     origin = np.mean([eye.centre for eye in eyes], axis=0) if eyes else np.zeros(3)
@@ -120,6 +124,22 @@ def _registered(template: MorphableModel, model: MorphableModel) -> RegisteredMe
             f"model: expected a face on which the template's fits, got one where {matched:.0%} of it finds a partner"
         )
     return registration
+
+
+def _without_gaps(template: MorphableModel, registration: RegisteredMesh) -> NDArray[np.float64]:
+    """The registered template, its skin smooth where the model had nothing to lay it on: a crown, a nape."""
+    moved = registration.scale * template.mean @ registration.rotation.T + registration.shift
+    known = _well_inside(registration.matched | hidden_vertices(template), template)
+    return np.asarray(moved + continued(moved, template.faces, known, (registration.vertices - moved)[None])[0])
+
+
+def _well_inside(known: NDArray[np.bool_], template: MorphableModel) -> NDArray[np.bool_]:
+    """What is known, without its rim outside the features: partners at the end of a surface are its border, or beyond."""
+    inside, graph = known.copy(), adjacency(template.faces, len(known))
+    kept = known & template.region("face") & ~template.region("forehead")
+    for _ in range(_RIM_RINGS):
+        inside &= (graph @ (~inside).astype(float) == 0) | kept
+    return inside
 
 
 def _expressions(
