@@ -49,7 +49,9 @@ from toongeo.model import default_model as default_model
 from toongeo.model import expression_weights as expression_weights
 from toongeo.model import load_eos as load_eos
 from toongeo.model import load_ict_facekit as load_ict_facekit
+from toongeo.model import load_model as load_model
 from toongeo.model import preset as preset
+from toongeo.model import save_model as save_model
 from toongeo.pipeline import AlignedFace as AlignedFace
 from toongeo.pipeline import Animator as Animator
 from toongeo.pipeline import ClassicalParser as ClassicalParser

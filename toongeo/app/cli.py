@@ -14,6 +14,7 @@ from toongeo.app.commands.flags import in_flags, know_flags
 from toongeo.app.commands.make_command import add_make
 from toongeo.app.commands.number_types import port
 from toongeo.app.commands.performance_commands import add_performances
+from toongeo.app.models.commands import add_model
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
 __all__ = ["main"]
@@ -96,6 +97,7 @@ def _parser() -> argparse.ArgumentParser:
     rig.add_argument("--texture", type=Path, metavar="IMAGE", help="picture for the mesh's texture coordinates")
     rig.set_defaults(run=_rig)
     add_bench(commands)
+    add_model(commands)
     add_completion(commands, parser)
     _add_debug(parser)
     know_flags(parser)

@@ -6,9 +6,10 @@ Constants were judged on ICT-FaceKit's head and the template (``benchmarks/regis
 import numpy as np
 import scipy.sparse as sp
 
-from toongeo.geometry import cotangent_laplacian, vertex_normals
 from toongeo.geometry.facing_surface import FACING, FacingSurface
+from toongeo.geometry.operators.cotangent_laplacian import cotangent_laplacian
 from toongeo.geometry.operators.factor import factor_spd, solve
+from toongeo.geometry.operators.vertex_normals import vertex_normals
 
 __all__ = ["carry_shapes"]
 

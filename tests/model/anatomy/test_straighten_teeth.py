@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from toongeo.model.anatomy.rims import rim_path
-from toongeo.pipeline.align.straighten_teeth import PARTS, PARTS_OF_RIM, STRETCH, straighten_teeth
+from toongeo.model.anatomy.straighten_teeth import PARTS, PARTS_OF_RIM, STRETCH, straighten_teeth
 
 
 def test_an_affine_motion_stays_and_a_bent_one_becomes_one(model, rng):

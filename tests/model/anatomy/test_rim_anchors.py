@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from toongeo.model.anatomy.rim_anchors import rim_anchors
 from toongeo.model.anatomy.rims import rim_path
 from toongeo.model.ibug68 import LID_RIMS, LIP_RIMS
-from toongeo.pipeline.align.rim_anchors import rim_anchors
 
 
 @pytest.mark.parametrize(("name", "rim"), [*LID_RIMS.items(), *LIP_RIMS.items()])
