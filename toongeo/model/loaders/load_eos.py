@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from toongeo.model.ibug68 import PARTS
 from toongeo.model.loaders.foreign_model import named_parts
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.check_file import file_bytes
+from toongeo.reading.promise import promised
 
 __all__ = ["load_eos"]
 
@@ -19,6 +21,7 @@ _EYE_DEPTH_MM = 13.0  # from the corners of an eye back to its centre
 _INNER_MOUTH_CORNERS = {60: 48, 64: 54}  # the published table leaves them out: the outer corners take their place
 
 
+@promised("a binary file of eos", argument="shape")
 def load_eos(shape: str | Path, landmarks: str | Path, expression: str | Path | None = None) -> MorphableModel:
     """A shape model of eos with its table of landmarks and, if given, its expression blendshapes.
 
@@ -69,7 +72,7 @@ class _Reader:
     """Little-endian numbers, one after the other."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self.data, self.offset = path, path.read_bytes(), 0
+        self.path, self.data, self.offset = path, file_bytes(path, argument="shape"), 0
 
     def take(self, dtype: str, count: int) -> NDArray:
         size = count * np.dtype(dtype).itemsize

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from toongeo.model.loaders.foreign_model import named_parts
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promised
+from toongeo.reading.read_npz import read_npz
 
 __all__ = ["load_ict_facekit"]
 
@@ -17,6 +19,7 @@ _N_SKIN, _N_NARROW, _N_FACE = 11248, 6706, 9409  # the vertex order of the topol
 _EYEBALLS = slice(21451, 23021), slice(23021, 24591)  # left, right
 
 
+@promised("the arrays of ICT-FaceKit")
 def load_ict_facekit(path: str | Path) -> MorphableModel:
     """ICT-FaceKit's skin (face, head and neck) from one compressed archive.
 
@@ -41,11 +44,7 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
     ----------
     R. Li et al., "Learning formation of physically-based face attributes", CVPR 2020 (ICT-FaceKit, MIT license).
     """
-    with np.load(path, allow_pickle=False) as archive:
-        missing = sorted(_KEYS - set(archive.files))
-        if missing:
-            raise ValueError(f"path: expected the arrays of ICT-FaceKit in {path}, without {', '.join(missing)}")
-        z = {name: archive[name] for name in _KEYS}
+    z = read_npz(path, sorted(_KEYS), expected="the arrays of ICT-FaceKit")
     if len(z["neutral"]) < _EYEBALLS[1].stop:
         raise ValueError(f"path: expected at least {_EYEBALLS[1].stop} vertices, got {len(z['neutral'])}")
     neutral = _MM * z["neutral"].astype(float)
