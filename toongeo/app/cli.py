@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from toongeo import __version__
+from toongeo.app.batch import add_batch
 from toongeo.app.bench.commands import add_bench
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
@@ -27,7 +28,7 @@ def main(arguments: list[str] | None = None) -> int:
     -------
     int
         0 if all went well; 2 on bad input, a failed fit or a missing extra, 3 if landmarks were found that are not
-        sure, with one line on standard error that says what and where.
+        sure, with one line on standard error that says what and where; 130 if it was interrupted.
     """
     options = _parser().parse_args(arguments)
     try:
@@ -38,6 +39,9 @@ def main(arguments: list[str] | None = None) -> int:
     except (ValueError, OSError, RuntimeError, ImportError) as error:
         print(f"toongeo: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("toongeo: interrupted", file=sys.stderr)
+        return 130
     return 0
 
 
@@ -72,6 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
+    add_batch(commands)
     _add_landmarks_editor(commands)
     _add_drive(commands)
     _add_serve(commands)
