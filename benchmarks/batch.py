@@ -25,42 +25,30 @@ for name in ("OPENBLAS", "OMP", "MKL"):
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "data_templates" / "build")]
+
+from renders.render_face import render_face
 
 from toongeo.batch import read_manifest
 from toongeo.io import encode_image, write_landmarks
-from toongeo.model import default_model
-from toongeo.render import ScaledOrthographicCamera, Surface, render_mesh
 
 CORRUPT_ONE_IN = 20
 SIZE = 256  # px of the pictures
-STYLES = ({"shading": "clay"}, {"shading": "unlit"}, {"shading": "lit"})
+SEED = 2200
 
 
 def draw(folder: Path, count: int) -> set[str]:
-    """Heads of the template and their landmarks; the names of those that are spoiled."""
-    model, rng = default_model(), np.random.default_rng(0)
-    skin = model.faces[model.region("skin")[model.faces].all(axis=1)]
-    eyes = [(eye.vertices, eye.faces) for eye in getattr(model, "eyes", ()) if hasattr(eye, "vertices")]
+    """Random faces in all styles and their landmarks; the names of those that are spoiled."""
     corrupt = set()
     for k in range(count):
-        V = model.vertices(rng.normal(0, 1.0, len(model.identity)))
-        yaw, pitch = rng.uniform(-15, 15), rng.uniform(-8, 8)
-        face = V[model.region("face")]
-        camera = ScaledOrthographicCamera.look(
-            yaw, pitch, size=SIZE, centre=face.mean(0), extent=1.5 * np.ptp(face, axis=0).max()
-        )
-        surfaces = [Surface(V, skin, colours=np.clip(model.albedo_mean, 0, 1))]
-        surfaces += [Surface(v, f, colours=np.ones((len(v), 3))) for v, f in eyes]
-        style = dict(STYLES[k % 2])
-        picture = render_mesh(surfaces, camera, SIZE, background=rng.random(3), **style)
-        content, name = encode_image(picture), f"{k // 100:03}/head{k:05}"
+        render = render_face(np.random.default_rng([SEED, k]), size=SIZE)
+        content, name = encode_image(render.picture), f"{k // 100:03}/head{k:05}"
         if k % CORRUPT_ONE_IN == 7:
             corrupt.add(f"{name}.png")
             content = content[: len(content) // 2] if k % 2 else b"not a picture"
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / f"{name}.png").write_bytes(content)
-        write_landmarks(folder / f"{name}.pts", camera.project(V[model.landmarks])[:, :2])
+        write_landmarks(folder / f"{name}.pts", render.landmarks)
     return corrupt
 
 
