@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from toongeo import __version__
+from toongeo.app.batch import add_batch
 from toongeo.app.bench.commands import add_bench
 from toongeo.app.commands.completion import add_completion
 from toongeo.app.commands.edit_command import add_edit
@@ -77,6 +78,7 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
+    add_batch(commands)
     _add_landmarks_editor(commands)
     add_performances(commands)
     _add_serve(commands)

@@ -26,6 +26,7 @@ from toongeo.render import (
     render_mesh,
     studio_light,
 )
+from toongeo.render.picture_size import picture_size
 
 if TYPE_CHECKING:
     import trimesh
@@ -147,6 +148,7 @@ class Avatar(AvatarStages):
         ValueError
             For weights as :meth:`vertices`; if the size is not positive.
         """
+        picture_size(size)
         camera = camera or self._camera(size, yaw, pitch)
         surfaces = self.surfaces(weights)
         if not textured:

@@ -90,7 +90,7 @@ class _Reader:
     """Little-endian numbers, one after the other."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self.data, self.offset = path, path.read_bytes(), 0
+        self.path, self.data, self.offset = path, file_bytes(path, argument="shape"), 0
 
     def take(self, dtype: str, count: int) -> NDArray:
         size = count * np.dtype(dtype).itemsize
