@@ -172,6 +172,14 @@ class MorphableModel:
                 V += (c.astype(np.float32) @ modes.reshape(len(modes), V.size)).reshape(-1, 3)
         return V
 
+    @property
+    def principal_modes(self) -> np.ndarray:
+        """Identity modes (c, n, 3), mm, of unit variance between people: random faces are drawn from them.
+
+        A mode that leads from a mean that they can make to one that they cannot is not among them.
+        """
+        return self.identity if self.prior is None else self.identity[: self.prior.n_principal]
+
     def region(self, name: str) -> np.ndarray:
         """Mask (n,) of a named region.
 
