@@ -20,8 +20,8 @@ N_CENTRES = 400
 def smooth_modes(points: Floats, face: Floats, count: int = N_FUNCTIONS) -> Floats:
     """Modes (3 count, n, 3) at points (n, 3) of a process whose principal functions are those on a face (f, 3).
 
-    Its covariance at the face is the sum of ``sd^2 exp(-d^2 / 2 length^2)`` over `SCALES_MM`, for each coordinate, cut to
-    its ``count`` largest principal functions (Nystroem's extension elsewhere): away from the face it fades to nothing.
+    Its covariance at the face is the sum of ``sd^2 exp(-d^2 / 2 length^2)`` over `SCALES_MM`, for each coordinate, cut
+    to its ``count`` largest principal functions (Nystroem's extension elsewhere): off the face it fades to nothing.
     """
     centres = face[farthest_points(face, min(N_CENTRES, len(face)))]
     variances, U = np.linalg.eigh(covariance(centres, centres))

@@ -18,8 +18,8 @@ def default_model() -> MorphableModel:
     """The default template: a head of about 19,000 vertices, 81 identity and 64 expression modes.
 
     The shapes are an artist's (CC0), how they vary is that of people: the first 80 identity modes are the principal
-    axes of faces registered to it, the largest first, in standard deviations. The last one leads from the likeliest face
-    that these can make to the mean of people, which they do not span. The mean of the model is the artist's; the
+    axes of faces registered to it, the largest first, in standard deviations. The last one leads from the likeliest
+    face that these can make to the mean of people, which they do not span. The mean of the model is the artist's; the
     likeliest face is ``default_model().prior.mean``. Loaded once a process; read-only.
 
     Examples

@@ -118,8 +118,8 @@ class LandmarkProblem:
         if target.scan_offsets is None:
             return self, x
         other = replace(self, target=replace(target, offsets=target.scan_offsets, convention="scans"))
-        losses = (p.loss(state.vertices, state.prior_weight, state.robust_weight) for p in (self, other))
-        there = scans_tell(*losses, x, (self.search.bounds[0], state.upper))
+        before, after = (p.loss(state.vertices, state.prior_weight, state.robust_weight) for p in (self, other))
+        there = scans_tell(before, after, x, (self.search.bounds[0], state.upper))
         told, x = (self, x) if there is None else (other, there)
         return replace(told, target=replace(told.target, scan_offsets=None)), x
 
