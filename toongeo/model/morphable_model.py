@@ -167,6 +167,14 @@ class MorphableModel:
             raise ValueError("model: expected one with joints, got one whose expressions are all linear")
         return self.skinning.posed(self.vertices(identity, expression), pose)
 
+    @property
+    def principal_modes(self) -> np.ndarray:
+        """Identity modes (c, n, 3), mm, of unit variance between people: random faces are drawn from them.
+
+        A mode that leads from a mean that they can make to one that they cannot is not among them.
+        """
+        return self.identity if self.prior is None else self.identity[: self.prior.n_principal]
+
     def region(self, name: str) -> np.ndarray:
         """Mask (n,) of a named region.
 
