@@ -41,6 +41,8 @@ from toongeo.pipeline.align.size_teeth import size_teeth
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
 from toongeo.pipeline.texture.bake_texture import check_size
+from toongeo.pipeline.texture.find_glasses import find_glasses
+from toongeo.pipeline.texture.without_glasses import without_glasses
 from toongeo.protocols import FaceParser, HairModeler
 
 __all__ = ["STAGES", "make_avatar"]
@@ -196,11 +198,13 @@ def make_avatar(
         head = add_hair(img, face, shapes, parse, None if hair is True else hair)
         face, shapes = head.face, head.rig
     clock.start("texture")
-    irises = find_irises(img, landmarks)
+    glasses = find_glasses(img, landmarks)
+    bare = img if glasses is None else without_glasses(img, landmarks, glasses, parse)
+    irises = find_irises(bare, landmarks)
     eyes = aim_eyes(face, eyes, irises)
     shown = parse if head.hair is None else under_hair(parse, face)
-    texture = bake_texture(img, face, rig=shapes, size=texture_size, parse=shown)
-    texture = bake_eyes(img, face, eyes, texture, irises)
+    texture = bake_texture(bare, face, rig=shapes, size=texture_size, parse=shown)
+    texture = bake_eyes(bare, face, eyes, texture, irises)
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(
@@ -212,7 +216,7 @@ def make_avatar(
             *doubts,
             *fit.report.warnings,
             *([str(cleaned.change)] if cleaned.change else []),
-            *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes),
+            *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes, glasses),
             *missing_parts(model),
             *shape_warnings(face, eyes, quality),
             *(eye_warnings(irises) if model.has("eyes") else ()),
