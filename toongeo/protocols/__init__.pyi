@@ -17,3 +17,6 @@ from toongeo.protocols.landmarks import LandmarkDetection as LandmarkDetection
 from toongeo.protocols.landmarks import LandmarkDetector as LandmarkDetector
 from toongeo.protocols.textures import TextureGenerator as TextureGenerator
 from toongeo.protocols.textures import TextureGeometry as TextureGeometry
+from toongeo.protocols.stylizers import PictureWarp as PictureWarp
+from toongeo.protocols.stylizers import Stylized as Stylized
+from toongeo.protocols.stylizers import Stylizer as Stylizer
