@@ -81,7 +81,7 @@ def surroundings(subject: Subject, style: Style) -> Singles:
 def _palette_distances(subject: Subject, count: int) -> tuple[Singles, list[Singles]]:
     """Palette (k, 3), and squared distances k (h, w) to it in the reduced picture; hair has colours of its own."""
     hair, other = subject.hair, 1 - np.maximum(subject.hair, _SKIN_WEIGHT * subject.skin.drawn)
-    smooth = cv2.medianBlur(subject.small, 5)  # no specks: 5 px are 0.04 face sizes
+    smooth = np.asarray(cv2.medianBlur(subject.small, 5), np.float32)  # no specks: 5 px are 0.04 face sizes
     hairy = round(_HAIR_COLOURS * count) if hair.mean() > _HAIRY * subject.skin.drawn.mean() else 0
     palette = palette_of(smooth, other, count - hairy)
     barred = [hair if hairy else np.zeros_like(hair)] * len(palette)
@@ -117,7 +117,7 @@ def _add_blush(lab: Singles, subject: Subject, cover: Singles, strength: float) 
             rows, columns = np.mgrid[low[1] : low[1] + part.shape[0], low[0] : low[0] + part.shape[1]]
             square = (columns - middle[0]) ** 2 + (rows - middle[1]) ** 2
             blob = np.exp(-square / (2 * radius**2)).astype(np.float32) * cover[box]
-            part += np.float32(strength) * blob[..., None] * np.float32(_BLUSH)
+            part += np.float32(strength) * blob[..., None] * np.array(_BLUSH, np.float32)
 
 
 def _draw_outlines(canvas: Canvas, subject: Subject, skin: Singles, style: Style, pens: Pens) -> None:
@@ -132,7 +132,9 @@ def _draw_outlines(canvas: Canvas, subject: Subject, skin: Singles, style: Style
 
 
 def _draw_long_lines(canvas: Canvas, subject: Subject, pens: Pens) -> None:
-    response = long_lines(subject.lines, subject, _LEAST_LONG_LINE)
-    if response.any():
-        cover = antialiased(enlarged(response, subject.picture.shape) - _LEAST_LONG_LINE, _LINE_EDGE)
-        canvas.cover(cover, pens.line, 0.85)
+    """Rims of glasses and the like: dark ones by the pen, light ones in their own colour."""
+    for response, paint in ((subject.lines, pens.line), (-subject.lines, rgb_of(subject.lab))):
+        response = long_lines(response, subject, _LEAST_LONG_LINE)
+        if response.any():
+            cover = antialiased(enlarged(response, subject.picture.shape) - _LEAST_LONG_LINE, _LINE_EDGE)
+            canvas.cover(cover, paint, 0.85)

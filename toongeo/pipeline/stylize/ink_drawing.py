@@ -56,7 +56,7 @@ def _hatching(subject: Subject, lightness: Singles, skin: Singles) -> Singles:
     mix = _SHADE * shade + _PHOTO * photo
     frame = face_frame(subject.landmarks)
     rows, columns = np.mgrid[: lightness.shape[0], : lightness.shape[1]].astype(np.float32)
-    across, down = np.float32(frame.axes / frame.size)
+    across, down = (frame.axes / frame.size).astype(np.float32)
     x, y = columns - np.float32(frame.origin[0]), rows - np.float32(frame.origin[1])
     side = -1.0 if subject.light.from_right else 1.0
     direction = side * _HATCH_DIRECTION[0] * across + _HATCH_DIRECTION[1] * down

@@ -20,7 +20,7 @@ class Style:
     chroma : float
         Times the picture's.
     lift : float
-        About how much lighter skin becomes, L*; never more than 9.
+        About how much lighter skin becomes, L*; never more than 3 above its median.
     shadow, light : (L*, a*, b*)
         Of the dark and the light tone of skin, relative to it.
     line : float

@@ -1,5 +1,6 @@
 """From a photograph to a drawing."""
 
+import numbers
 from typing import Any
 
 import cv2
@@ -13,7 +14,7 @@ from toongeo.pipeline.landmarks.given_or_found import given_or_found
 from toongeo.pipeline.parse.completed_landmarks import completed_landmarks
 from toongeo.pipeline.parse.find_hair import find_hair
 from toongeo.pipeline.stylize.appearance.head_light import HeadLight, head_light
-from toongeo.pipeline.stylize.appearance.pixels import reduced
+from toongeo.pipeline.stylize.appearance.pixels import placed_in, reduced, sampled
 from toongeo.pipeline.stylize.appearance.subject import WORKING_SIZE, Subject, subject_of
 from toongeo.pipeline.stylize.coloured_drawing import coloured_drawing, surroundings
 from toongeo.pipeline.stylize.exaggerated import exaggerated
@@ -78,7 +79,8 @@ def stylize(
     References
     ----------
     H. Winnemoeller, J. E. Kyprianidis, S. C. Olsen: XDoG. Computers & Graphics 2012. J. E. Kyprianidis, H. Kang: Image
-    and video abstraction by coherence-enhancing filtering. CGF 2011. S. E. Brennan: Caricature generator. Leonardo 1985.
+    and video abstraction by coherence-enhancing filtering. CGF 2011. S. E. Brennan: Caricature generator.
+    Leonardo 1985.
 
     Examples
     --------
@@ -93,7 +95,7 @@ def stylize(
     """
     check_image(img)
     look = check_style(style)
-    if not (np.isscalar(strength) and np.isfinite(strength) and 0 <= strength <= _STRONGEST):
+    if not (isinstance(strength, numbers.Real) and 0 <= strength <= _STRONGEST):
         raise ValueError(f"strength: expected a number in [0, {_STRONGEST:g}], got {strength!r}")
     points = ibug_landmarks(given_or_found(img, landmarks, scheme), scheme)
     fit = fit_3dmm(img, points)
@@ -103,10 +105,12 @@ def stylize(
     if strength == 0:
         return Stylized(img, points, warp, img)
     factor = min(1.0, (_LARGEST / (img.shape[0] * img.shape[1])) ** 0.5)
-    photo, placed = np.asarray(reduced(img, factor)), (points + 0.5) * factor - 0.5
+    photo, placed = _reduced(img, factor), placed_in(points, factor)
     subject = _subject(photo, placed, warp.scaled(factor), look)
     backdrop = None if look.ink else surroundings(subject, look)
-    drawing, texture = (_drawn(subject, variant, backdrop, strength, img.shape) for variant in (look, look.for_texture()))
+    drawing, texture = (
+        _drawn(subject, variant, backdrop, strength, img.shape) for variant in (look, look.for_texture())
+    )
     return Stylized(drawing, warp.points(points), warp, texture)
 
 
@@ -133,20 +137,27 @@ def _subject(photo: Bytes, points: Floats, warp: VelocityWarp, look: Style) -> S
     smaller = min(1.0, WORKING_SIZE / before)
     shape = (round(smaller * photo.shape[0]), round(smaller * photo.shape[1]))
     light = head_light(fit, shape, smaller, before * smaller)
-    places = reduced(sources, min(1.0, WORKING_SIZE / size))  # of the reduced drawing in the photograph
-    there = (places + 0.5) * smaller - 0.5
-    light = HeadLight(*(_taken(plane, there) for plane in (light.head, light.face, light.shade)), light.from_right)
+    places = np.asarray(reduced(sources, min(1.0, WORKING_SIZE / size)), np.float64)  # of the reduced drawing's pixels
+    there = placed_in(places, smaller)
+    head, face, shade = (_taken(plane, there) for plane in (light.head, light.face, light.shade))
+    right, left = (None if iris is None else warp.points(iris.centre) for iris in irises[::-1])
     painted = look.palette == 0
     return subject_of(
         np.asarray(warp.picture(photo, sources)),
         moved,
         size,
-        light,
+        HeadLight(head, face, shade, light.from_right),
         _taken(_hair(photo, points, fit), places),
-        tuple(None if iris is None else warp.points(iris.centre) for iris in irises[::-1]),
+        (right, left),
         passes=_PAINTED_PASSES if painted else _PASSES,
         tolerance=_PAINTED_TOLERANCE if painted else _TOLERANCE,
     )
+
+
+def _reduced(img: Bytes, factor: float) -> Bytes:
+    if factor >= 1:
+        return img
+    return np.asarray(cv2.resize(img, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8)
 
 
 def _hair(photo: Bytes, points: Floats, fit: FaceFit) -> Singles:
@@ -157,9 +168,9 @@ def _hair(photo: Bytes, points: Floats, fit: FaceFit) -> Singles:
     return np.maximum(alpha * np.float32(1.0 if found.trusted else _DOUBTFUL), hat)
 
 
-def _taken(plane: Singles, places: Singles) -> Singles:
+def _taken(plane: Singles, places: Floats) -> Singles:
     """A plane at places (h, w, 2) px."""
-    return np.asarray(cv2.remap(plane, places.astype(np.float32), None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE))
+    return np.asarray(sampled(plane, np.asarray(places, np.float32), cv2.INTER_LINEAR, cv2.BORDER_REPLICATE))
 
 
 def _drawn(subject: Subject, look: Style, backdrop: Singles | None, strength: float, shape: tuple[int, ...]) -> Bytes:
@@ -168,4 +179,8 @@ def _drawn(subject: Subject, look: Style, backdrop: Singles | None, strength: fl
     if strength < 1:
         rgb = subject.picture + np.float32(strength) * (rgb - subject.picture)
     drawing = np.clip(np.rint(rgb), 0, 255).astype(np.uint8)
-    return drawing if drawing.shape == shape else np.asarray(cv2.resize(drawing, shape[1::-1], interpolation=cv2.INTER_CUBIC))
+    return (
+        drawing
+        if drawing.shape == shape
+        else np.asarray(cv2.resize(drawing, shape[1::-1], interpolation=cv2.INTER_CUBIC))
+    )

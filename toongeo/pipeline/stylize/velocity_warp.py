@@ -8,7 +8,8 @@ import numpy as np
 
 from toongeo._brief_repr import brief_repr
 from toongeo.arrays import Floats, Singles
-from toongeo.pipeline.stylize.face_frame import FaceFrame, face_frame
+from toongeo.pipeline.stylize.appearance.pixels import sampled
+from toongeo.pipeline.stylize.face_frame import face_frame
 from toongeo.pipeline.stylize.style_rules import WarpRule
 
 __all__ = ["VelocityWarp", "velocity_warp"]
@@ -65,16 +66,16 @@ class VelocityWarp:
         moved = np.asarray(self.inverse(nodes) - nodes, np.float32)
         rows, columns = np.mgrid[: shape[0], : shape[1]].astype(np.float32)
         grid = np.stack([columns, rows], axis=-1)
-        where = (grid - self.corner.astype(np.float32)) / np.float32(self.cell)
-        return np.asarray(grid + cv2.remap(moved, where, None, cv2.INTER_CUBIC, borderMode=cv2.BORDER_CONSTANT))
+        where = np.asarray((grid - self.corner) / self.cell, np.float32)
+        return np.asarray(grid + sampled(moved, where, cv2.INTER_CUBIC, cv2.BORDER_CONSTANT))
 
     def picture(self, img: np.ndarray, sources: Singles | None = None) -> np.ndarray:
         """A picture (h, w[, c]) of any depth after the warp; ``sources`` if they are known already."""
         sources = self.sources((img.shape[0], img.shape[1])) if sources is None else sources
-        return np.asarray(cv2.remap(img, sources, None, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE))
+        return np.asarray(sampled(img, sources, cv2.INTER_CUBIC, cv2.BORDER_REPLICATE))
 
     def determinants(self) -> Floats:
-        """Jacobian determinants (h - 2, w - 2) of the inverse at the inner nodes of the grid, by central differences."""
+        """Jacobian determinants (h - 2, w - 2) of the inverse at inner nodes of the grid, by central differences."""
         came = self.inverse(self._nodes())
         across, down = (came[1:-1, 2:] - came[1:-1, :-2]), (came[2:, 1:-1] - came[:-2, 1:-1])
         determinants = across[..., 0] * down[..., 1] - across[..., 1] * down[..., 0]
@@ -83,7 +84,10 @@ class VelocityWarp:
     def scaled(self, factor: float) -> "VelocityWarp":
         """The same warp of a resized picture; pixel centres are integers in both."""
         return replace(
-            self, field=self.field * np.float32(factor), corner=(self.corner + 0.5) * factor - 0.5, cell=self.cell * factor
+            self,
+            field=self.field * np.float32(factor),
+            corner=(self.corner + 0.5) * factor - 0.5,
+            cell=self.cell * factor,
         )
 
     def _nodes(self) -> Floats:
@@ -106,7 +110,7 @@ class VelocityWarp:
         nodes = np.asarray((at - self.corner) / self.cell, np.float32)
         # remap takes pictures of less than 32,768 rows
         parts = [
-            cv2.remap(self.field, part, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
+            sampled(self.field, part, cv2.INTER_LINEAR, cv2.BORDER_CONSTANT)
             for part in np.array_split(nodes, max(1, -(-len(nodes) // 30_000)))
         ]
         return np.concatenate(parts)

@@ -32,6 +32,9 @@ def _smooth_flow(subject: Subject, size: float) -> Singles:
     along = subject.flow.astype(np.float32)
     # the tensor of a field of unit tangents, smoothed, has the mean direction as its greatest eigenvector
     x, y = along[..., 0], along[..., 1]
-    tensor = [blurred(plane, _TENSOR * size) + np.float32(more) for plane, more in zip((x * x, x * y, y * y), _DIAGONAL, strict=True)]
+    tensor = [
+        blurred(plane, _TENSOR * size) + np.float32(more)
+        for plane, more in zip((x * x, x * y, y * y), _DIAGONAL, strict=True)
+    ]
     angle = 0.5 * np.arctan2(2 * tensor[1], tensor[0] - tensor[2])
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1).astype(np.float32)

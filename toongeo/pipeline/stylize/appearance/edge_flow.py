@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from toongeo.arrays import Singles
-from toongeo.pipeline.stylize.appearance.pixels import blurred
+from toongeo.pipeline.stylize.appearance.pixels import blurred, sampled
 
 __all__ = ["abstracted", "line_response", "mean_along", "tangent_flow"]
 
@@ -26,7 +26,7 @@ def tangent_flow(picture: Singles, sigma: float) -> Singles:
     sigma : float, px
         Of the tensor's Gaussian.
     """
-    across, down = cv2.Scharr(picture, cv2.CV_32F, 1, 0), cv2.Scharr(picture, cv2.CV_32F, 0, 1)
+    across, down = (np.asarray(cv2.Scharr(picture, cv2.CV_32F, *axis), np.float32) for axis in ((1, 0), (0, 1)))
     if picture.ndim == 2:
         across, down = across[..., None], down[..., None]
     tensor = np.stack([_dot(across, across), _dot(across, down), _dot(down, down)], axis=-1)
@@ -45,10 +45,10 @@ def mean_along(picture: Singles, flow: Singles, sigma: float, samples: int = _SA
         for k in range(1, samples + 1):
             at = at + step * direction
             share = float(np.exp(-0.5 * (k * step / sigma) ** 2))
-            total = total + np.float32(share) * _sampled(picture, at, cv2.INTER_LINEAR)
+            total = total + np.float32(share) * sampled(picture, at, cv2.INTER_LINEAR, cv2.BORDER_REFLECT_101)
             weight += share
             if k < samples:
-                ahead = _sampled(flow, at, cv2.INTER_NEAREST)
+                ahead = sampled(flow, at, cv2.INTER_NEAREST, cv2.BORDER_REFLECT_101)
                 backwards = _dot(ahead, direction)[..., None] < 0
                 direction = np.where(backwards, -ahead, ahead)
     return np.asarray(total / np.float32(weight))
@@ -93,7 +93,7 @@ def _bilateral_across(picture: Singles, flow: Singles, sigma: float, tolerance: 
         if k == 0:
             continue
         distance = 2 * sigma * k / _SAMPLES_ACROSS
-        other = _sampled(picture, start + np.float32(distance) * normal, cv2.INTER_LINEAR)
+        other = sampled(picture, start + np.float32(distance) * normal, cv2.INTER_LINEAR, cv2.BORDER_REFLECT_101)
         difference = other - picture
         unlike = _dot(difference, difference)[..., None]
         share = np.exp(np.float32(-0.5 * (distance / sigma) ** 2) - unlike / np.float32(2 * tolerance**2))
@@ -110,7 +110,3 @@ def _dot(a: Singles, b: Singles) -> Singles:
 def _grid(shape: tuple[int, ...]) -> Singles:
     rows, columns = np.mgrid[: shape[0], : shape[1]].astype(np.float32)
     return np.stack([columns, rows], axis=-1)
-
-
-def _sampled(picture: Singles, at: Singles, interpolation: int) -> Singles:
-    return np.asarray(cv2.remap(picture, at, None, interpolation, borderMode=cv2.BORDER_REFLECT_101))

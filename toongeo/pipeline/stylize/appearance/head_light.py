@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from toongeo.arrays import Floats, Singles
+from toongeo.arrays import Floats, Mask, Singles
 from toongeo.geometry import vertex_normals
 from toongeo.pipeline.fit import FaceFit
 from toongeo.pipeline.stylize.appearance.pixels import blurred
+from toongeo.protocols import Camera
 from toongeo.render import Surface, irradiance, render_mesh
 
 __all__ = ["HeadLight", "head_light"]
@@ -45,12 +46,13 @@ def head_light(fit: FaceFit, shape: tuple[int, int], factor: float, size: float)
     normals = vertex_normals(fit.vertices, fit.faces)
     head, facing = _rendered(fit, normals, "skin", camera, shape)
     face, _ = _rendered(fit, normals, "face", camera, shape)
-    from_right = bool(_LUMINANCE @ fit.light[_X] > 0)
+    harmonics = np.zeros((9, 3)) if fit.light is None else fit.light
+    from_right = bool(_LUMINANCE @ harmonics[_X] > 0)
     if not head.any():
         none = np.zeros(shape, np.float32)
         return HeadLight(none, none, none, from_right)
     shade = np.zeros(shape, np.float32)
-    shade[head] = _log_light(fit, facing[head])
+    shade[head] = _log_light(fit.camera, harmonics, facing[head])
     shade[head] -= np.median(shade[head])
     weight = blurred(head.astype(np.float32), _SPREAD * size)
     beyond = blurred(shade, _SPREAD * size) / np.maximum(weight, np.float32(1e-3))
@@ -60,15 +62,19 @@ def head_light(fit: FaceFit, shape: tuple[int, int], factor: float, size: float)
     return HeadLight(*covers, shade / np.float32(max(spread, _WEAK)), from_right)
 
 
-def _rendered(fit: FaceFit, normals: Floats, region: str, camera: object, shape: tuple[int, int]):  # type: ignore[no-untyped-def]
+def _rendered(
+    fit: FaceFit, normals: Floats, region: str, camera: Camera, shape: tuple[int, int]
+) -> tuple[Mask, Floats]:
     """Pixels of a region (h, w) bool, and normals (h, w, 3) in the model frame."""
     faces = fit.faces[fit.region(region)[fit.faces].all(axis=1)]
     surface = Surface(fit.vertices, faces, colours=(normals + 1) / 2, normals=normals)
-    drawn = render_mesh(surface, camera, shape, background=(0, 0, 0), shading="unlit", supersample=1)  # type: ignore[arg-type]
-    return drawn.any(axis=-1), drawn.astype(np.float64) / 127.5 - 1
+    drawn = render_mesh(surface, camera, shape, background=(0, 0, 0), shading="unlit", supersample=1)
+    return np.asarray(drawn.any(axis=-1)), drawn.astype(np.float64) / 127.5 - 1
 
 
-def _log_light(fit: FaceFit, normals: Floats) -> Floats:
+def _log_light(camera: Camera, harmonics: Floats, normals: Floats) -> Floats:
+    """log2 of the luminance that falls on surfaces with normals (k, 3) in the model frame."""
     normals = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-6)
-    light = irradiance(normals @ np.asarray(fit.camera.rotation).T, fit.light) @ _LUMINANCE
-    return np.asarray(np.log2(np.maximum(light, 1e-3)))
+    turned = camera.view(normals) - camera.view(np.zeros((1, 3)))
+    turned /= np.maximum(np.linalg.norm(turned, axis=1, keepdims=True), 1e-6)
+    return np.asarray(np.log2(np.maximum(irradiance(turned, harmonics) @ _LUMINANCE, 1e-3)))

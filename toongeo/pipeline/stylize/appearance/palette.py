@@ -28,11 +28,11 @@ def palette_of(lab: Singles, weight: Singles, count: int) -> Singles:
     indices = np.floor((lab.reshape(-1, 3) + [0.0, 128.0, 128.0]) / _BIN).astype(np.int64)
     cells = np.ravel_multi_index(tuple(np.clip(indices, 0, np.array(_BINS) - 1).T), _BINS)
     share = weight.reshape(-1).astype(np.float64)
-    mass = np.bincount(cells, share, int(np.prod(_BINS)))
-    used = np.flatnonzero(mass)
-    mass = mass[used]
-    colours = np.stack([np.bincount(cells, share * part, int(np.prod(_BINS)))[used] for part in lab.reshape(-1, 3).T])
-    colours = (colours / mass).T
+    counted = np.bincount(cells, share, int(np.prod(_BINS)))
+    used = np.flatnonzero(counted)
+    mass = counted[used]
+    sums = np.stack([np.bincount(cells, share * part, int(np.prod(_BINS)))[used] for part in lab.reshape(-1, 3).T])
+    colours = np.asarray((sums / mass).T)
     centres = colours[[int(np.argmax(mass))]]
     while len(centres) < min(count, len(used)):
         distance = np.square(colours[:, None] - centres[None]).sum(axis=2).min(axis=1)

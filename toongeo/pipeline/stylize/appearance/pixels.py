@@ -1,11 +1,13 @@
 """Small things done to whole pictures."""
 
+from typing import Any
+
 import cv2
 import numpy as np
 
-from toongeo.arrays import Singles
+from toongeo.arrays import Floats, Singles
 
-__all__ = ["antialiased", "blurred", "enlarged", "reduced", "rgb_of", "soft_step"]
+__all__ = ["antialiased", "blurred", "enlarged", "hull_of", "placed_in", "reduced", "rgb_of", "sampled", "soft_step"]
 
 _EDGE = 1.4  # px over which an antialiased edge goes from 0 to 1: the diagonal of a pixel
 
@@ -27,10 +29,26 @@ def blurred(picture: Singles, sigma: float) -> Singles:
     return np.asarray(cv2.GaussianBlur(picture, (0, 0), max(sigma, 0.1)))
 
 
+def placed_in(points: Floats, factor: float) -> Floats:
+    """Points (k, 2) px in a picture that was resized by a factor; pixel centres are integers in both."""
+    return np.asarray((points + 0.5) * factor - 0.5)
+
+
+def hull_of(points: Floats) -> Floats:
+    """Corners (k, 2) of the convex hull of points."""
+    return np.asarray(cv2.convexHull(points.astype(np.float32))[:, 0], np.float64)
+
+
 def rgb_of(lab: Singles) -> Singles:
     """RGB (h, w, 3) in 0..255 of CIELAB."""
     rgb = cv2.cvtColor(np.asarray(lab, np.float32), cv2.COLOR_LAB2RGB)
     return np.asarray(np.clip(rgb * 255, 0, 255))
+
+
+def sampled(picture: np.ndarray, at: Singles, interpolation: int, border: int) -> Any:
+    """A picture (H, W[, c]) at places (h, w, 2) px, by a kind of interpolation and of border of OpenCV."""
+    remap: Any = cv2.remap  # whose types know no single map of two channels; an empty second one is slow
+    return remap(picture, at, None, interpolation, borderMode=border)
 
 
 def soft_step(x: Singles, softness: float) -> Singles:

@@ -10,7 +10,7 @@ from toongeo.colour.min_cut import min_cut
 from toongeo.pipeline.parse.guided_filter import guided_filter
 from toongeo.pipeline.parse.masks import filled, grown
 from toongeo.pipeline.stylize.appearance.head_light import HeadLight
-from toongeo.pipeline.stylize.appearance.pixels import blurred, enlarged, reduced
+from toongeo.pipeline.stylize.appearance.pixels import blurred, enlarged, hull_of, placed_in, reduced
 
 __all__ = ["SkinRegion", "skin_region"]
 
@@ -28,10 +28,25 @@ _PLACE, _FOREHEAD = 2.5, 1.5  # log-odds for what lies within the hull, and with
 _HAIR = 5.0  # log-odds against what is known to be hair
 _SMOOTHNESS, _SURE = 3.0, 6.0  # of the cut
 _ROUNDS = 3
+_UNLIKE = 0.25  # likelihood of skin below which hair may grow on it
+_LIPS = 0.02  # face sizes around the lips that are drawn anew
 # The skin's colour: deviations from its median count in these tolerances (Lab; at most, offset, times).
 _MOST, _LEAST, _TIMES = (12.0, 6.0, 6.0), (4.0, 3.0, 3.0), (2.0, 1.6, 1.6)
 _FEATURES = (range(36, 42), range(42, 48), range(48, 60), range(17, 22), range(22, 27))
 _EYES_AND_BROWS = ((17, 18, 19, 20, 21, 39, 40, 41, 36), (22, 23, 24, 25, 26, 45, 46, 47, 42))
+
+
+@dataclass(frozen=True, eq=False)
+class _Planes:
+    """Planes (h, w) of the picture in which the cut is made: `lab` has three channels, the others lie in [0, 1]."""
+
+    lab: Singles
+    likely: Singles
+    inner: Singles
+    hull: Singles
+    head: Singles
+    face: Singles
+    hair: Singles
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,39 +90,35 @@ def skin_region(lab: Singles, landmarks: Floats, size: float, light: HeadLight, 
     hull = _hull(lab.shape, landmarks)
     inner = _eroded(hull, _INNER * size)
     for feature in _FEATURES:
-        inner &= ~grown(filled(lab.shape, cv2.convexHull(landmarks[list(feature)].astype(np.float32))[:, 0]), _FEATURE * size)
+        inner &= ~grown(filled(lab.shape, hull_of(landmarks[list(feature)])), _FEATURE * size)
     inner &= hair < 0.5
-    pixels = lab[inner] if inner.any() else lab[hull]
+    cheeks = inner & ~_may_be_beard(lab.shape, landmarks, size)
+    pixels = lab[cheeks if cheeks.any() else hull]
     median = np.median(pixels, axis=0)
     lit = np.median(pixels[pixels[:, 0] >= median[0]], axis=0)
     deviation = np.minimum(np.percentile(np.abs(pixels - median), 80, axis=0), _MOST)
     distance = (lab - median) / ((deviation + _LEAST) * _TIMES)
     likely = np.exp(-0.5 * np.square(distance).sum(axis=-1)).astype(np.float32)
     factor = min(1.0, _WORKING / size)
-    small = [reduced(np.asarray(plane, np.float32), factor) for plane in (lab, likely, inner, hull, light.head, light.face, hair)]
-    cut = _cut(*small, (landmarks + 0.5) * factor - 0.5, size * factor)
+    planes = (likely, inner, hull, light.head, light.face, hair)
+    small = _Planes(reduced(lab, factor), *(reduced(np.asarray(plane, np.float32), factor) for plane in planes))
+    cut = _cut(small, placed_in(landmarks, factor), size * factor)
     soft = guided_filter(np.asarray(lab / 100, np.float32), enlarged(cut, lab.shape), max(2, round(0.03 * size)), 2e-3)
     soft = np.clip(blurred(soft, 0.006 * size), 0, 1)
     covered = _covered(lab.shape, landmarks, size)
     return SkinRegion(
-        np.maximum(soft, covered), soft, blurred(hull.astype(np.float32), 0.01 * size), median.astype(np.float32), lit.astype(np.float32)
+        np.maximum(soft, covered),
+        soft,
+        blurred(hull.astype(np.float32), 0.01 * size),
+        median.astype(np.float32),
+        lit.astype(np.float32),
     )
 
 
-def _cut(
-    lab: Singles,
-    likely: Singles,
-    inner: Singles,
-    hull: Singles,
-    head: Singles,
-    face: Singles,
-    hair: Singles,
-    landmarks: Floats,
-    size: float,
-) -> Singles:
+def _cut(small: _Planes, landmarks: Floats, size: float) -> Singles:
     """Skin (h, w) of 0 and 1 in a small picture."""
-    low = np.maximum(head, hull) > 0.5
-    chin = np.arange(len(lab))[:, None] > landmarks[8, 1]
+    low = np.maximum(small.head, small.hull) > 0.5
+    chin = np.arange(len(small.lab))[:, None] > landmarks[8, 1]
     body = np.zeros((2 * round(_NECK * size) + 1, 1), np.uint8)
     body[: round(_NECK * size) + 1] = 1
     neck = cv2.dilate((low & chin).astype(np.uint8), body) > 0
@@ -116,19 +127,23 @@ def _cut(
     brows = landmarks[17:27].mean(axis=0)
     down = landmarks[8] - brows
     down = down / np.linalg.norm(down)
-    rows, columns = np.mgrid[: lab.shape[0], : lab.shape[1]]
+    rows, columns = np.mgrid[: small.lab.shape[0], : small.lab.shape[1]]
     below = ((columns - brows[0]) * down[0] + (rows - brows[1]) * down[1]) / size > 0
-    strip = grown(hull > 0.5, _STRIP * size)
-    sure = (inner > 0.6) & (likely > 0.25)
-    skin = sure | ((likely > 0.35) & near & (below | strip) & (hair < 0.5))
-    place = np.where(hull > 0.5, _PLACE, np.where((face > 0.5) & (hair < 0.5), _FOREHEAD, 0.0)).astype(np.float32) - _HAIR * hair
-    outside = (~skin & (likely < 0.1) & (hull < 0.5)) | far | (hair > 0.5)
+    strip = grown(small.hull > 0.5, _STRIP * size)
+    sure = (small.inner > 0.6) & (small.likely > 0.25)
+    skin = sure | ((small.likely > 0.35) & near & (below | strip) & (small.hair < 0.5))
+    beard = _may_be_beard(small.lab.shape, landmarks, size) & (small.likely < _UNLIKE)
+    place = np.where(
+        small.hull > 0.5, _PLACE, np.where((small.face > 0.5) & (small.hair < 0.5), _FOREHEAD, 0.0)
+    ).astype(np.float32)
+    place = np.where(beard, 0, place) - _HAIR * small.hair
+    outside = (~skin & (small.likely < 0.1) & (small.hull < 0.5)) | far | (small.hair > 0.5) | beard
     for _ in range(_ROUNDS):
-        odds = _colour_odds(lab, skin, outside) + place
+        odds = _colour_odds(small.lab, skin, outside) + place
         odds = np.where(far, -9.0, np.where(sure, 9.0, odds)).astype(np.float32)
-        skin = min_cut(odds, lab, _SMOOTHNESS, _SURE)
-        outside = ~skin & (hull < 0.5)
-    skin = _tidied(skin, inner > 0.6, size)
+        skin = min_cut(odds, small.lab, _SMOOTHNESS, _SURE)
+        outside = ~skin & ((small.hull < 0.5) | beard)
+    skin = _tidied(skin, sure, size)
     return skin.astype(np.float32)
 
 
@@ -144,6 +159,14 @@ def _colour_odds(lab: Singles, inside: Mask, outside: Mask) -> Singles:
             counts = 0.5 * counts + 0.25 * (np.roll(counts, 1, axis) + np.roll(counts, -1, axis))
         shares.append(counts.reshape(-1)[cells] / max(1, int(mask.sum())) + 1e-4)
     return np.clip(np.log(shares[0] / shares[1]), -_EVIDENCE, _EVIDENCE).astype(np.float32)
+
+
+def _may_be_beard(shape: tuple[int, ...], landmarks: Floats, size: float) -> Mask:
+    """Where beards and moustaches grow: below the nose within the jaw, but for the lips."""
+    wings = landmarks[[31, 35]] + 0.06 * (landmarks[[31, 35]] - landmarks[33])
+    lower = filled(shape, np.vstack([landmarks[2:15], wings[1], landmarks[33], wings[0]]))
+    lips = filled(shape, hull_of(landmarks[48:60]))
+    return lower & ~grown(lips, _LIPS * size)
 
 
 def _tidied(skin: Mask, core: Mask, size: float) -> Mask:
@@ -167,9 +190,11 @@ def _hull(shape: tuple[int, ...], landmarks: Floats) -> Mask:
 def _covered(shape: tuple[int, ...], landmarks: Floats, size: float) -> Singles:
     """Sockets and lips, where features are drawn anew: skin lies under them."""
     mask = np.zeros(shape[:2], bool)
-    for part in (*_EYES_AND_BROWS, tuple(range(48, 60))):
-        mask |= grown(filled(shape, cv2.convexHull(landmarks[list(part)].astype(np.float32))[:, 0]), _SOCKETS * size)
-    return np.clip(blurred((mask & _eroded(_hull(shape, landmarks), 0.01 * size)).astype(np.float32), 0.008 * size), 0, 1)
+    for part, margin in (*((part, _SOCKETS) for part in _EYES_AND_BROWS), (tuple(range(48, 60)), _LIPS)):
+        mask |= grown(filled(shape, hull_of(landmarks[list(part)])), margin * size)
+    return np.clip(
+        blurred((mask & _eroded(_hull(shape, landmarks), 0.01 * size)).astype(np.float32), 0.008 * size), 0, 1
+    )
 
 
 def _eroded(mask: Mask, radius: float) -> Mask:

@@ -13,7 +13,7 @@ __all__ = ["skin_tone", "toned_skin"]
 
 _AIM = 74.0  # L*: darker skin is lifted by a part of the distance, lighter skin by the least
 _PART = 0.35
-_MOST = 9.0  # L* above the median of the photograph's skin: dark skin stays dark
+_MOST = 3.0  # L* above the median of the photograph's skin: dark skin stays dark
 _LIGHTEST = 92.0
 _DARK, _BRIGHT = -0.75, 0.85  # of the shading, at which tones change
 _PHOTO_SPREAD = 22.0  # L* from the median that counts as much as one unit of shading
@@ -33,7 +33,7 @@ def skin_tone(subject: Subject, style: Style) -> Singles:
     lit, median = subject.skin.lit, subject.skin.median
     lift = np.clip(_PART * (_AIM - lit[0]), 0.5 * style.lift, 1.6 * style.lift)
     lightness = min(lit[0] + lift, median[0] + _MOST, _LIGHTEST)
-    return np.array([max(lightness, min(lit[0], _LIGHTEST)), *(lit[1:] * style.chroma)], np.float32)
+    return np.array([lightness, *(lit[1:] * style.chroma)], np.float32)
 
 
 def toned_skin(subject: Subject, style: Style) -> Singles:
@@ -41,11 +41,11 @@ def toned_skin(subject: Subject, style: Style) -> Singles:
     tone = skin_tone(subject, style)
     shading = _shading(subject, style)
     neutral = np.array([1, 0, 0] if subject.grey else [1, 1, 1], np.float32)
-    flat = tone + shading.dark[..., None] * (neutral * np.float32(style.shadow))
-    flat += shading.bright[..., None] * (neutral * np.float32(style.light))
+    flat = tone + shading.dark[..., None] * (neutral * np.array(style.shadow, np.float32))
+    flat += shading.bright[..., None] * (neutral * np.array(style.light, np.float32))
     if style.tones > 3:
         flat[..., 0] += 5 * np.clip(shading.mix, -1.5, 1.5)
-    own = subject.lab * np.float32([1, style.chroma, style.chroma])
+    own = subject.lab * np.array([1, style.chroma, style.chroma], np.float32)
     own[..., 0] += tone[0] - subject.skin.lit[0]
     return np.asarray(own + np.float32(style.flatness) * (flat - own))
 
@@ -57,8 +57,8 @@ def _shading(subject: Subject, style: Style) -> _Shading:
     mix = (1 - 0.5 * style.shading) * enlarged(subject.light.shade, subject.lab.shape) + np.float32(share) * photo
     mix = np.asarray(mix, np.float32)
     if style.tones > 3:
-        return _Shading(soft_step(_DARK - mix, _SOFT), soft_step(mix - _BRIGHT, _SOFT), mix)
+        return _Shading(soft_step(np.float32(_DARK) - mix, _SOFT), soft_step(mix - np.float32(_BRIGHT), _SOFT), mix)
     none = np.zeros_like(mix)
-    dark = antialiased(_DARK - mix, _FLAT_EDGE) if style.tones > 1 else none
-    bright = antialiased(mix - _BRIGHT, _FLAT_EDGE) if style.tones > 2 else none
+    dark = antialiased(np.float32(_DARK) - mix, _FLAT_EDGE) if style.tones > 1 else none
+    bright = antialiased(mix - np.float32(_BRIGHT), _FLAT_EDGE) if style.tones > 2 else none
     return _Shading(dark, bright, mix)

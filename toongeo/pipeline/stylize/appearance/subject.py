@@ -8,7 +8,7 @@ from toongeo.arrays import Bytes, Floats, Singles
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.stylize.appearance.edge_flow import abstracted, line_response
 from toongeo.pipeline.stylize.appearance.head_light import HeadLight
-from toongeo.pipeline.stylize.appearance.pixels import enlarged, reduced
+from toongeo.pipeline.stylize.appearance.pixels import enlarged, placed_in, reduced
 from toongeo.pipeline.stylize.appearance.skin_region import SkinRegion, skin_region
 from toongeo.pipeline.stylize.appearance.steep_edges import steep_edges
 
@@ -81,7 +81,7 @@ def subject_of(
     factor = min(1.0, WORKING_SIZE / size)
     small, flow = abstracted(reduced(cielab(picture), factor), size * factor, passes, tolerance)
     lines = line_response(small[..., 0], flow, size * factor)
-    skin = skin_region(small, (landmarks + 0.5) * factor - 0.5, size * factor, light, hair)
+    skin = skin_region(small, placed_in(landmarks, factor), size * factor, light, hair)
     lab = steep_edges(enlarged(small, picture.shape), max(1, round(_STEEP_RADIUS * size)))
     grey = bool(np.abs(small[..., 1:]).mean() < _GREY)
     return Subject(picture, landmarks, size, irises, factor, small, flow, lines, lab, hair, skin, light, grey)

@@ -37,7 +37,12 @@ class Canvas:
         self._blend(box, cover[box] * np.float32(strength), paint[box] if paint.ndim == 3 else paint)
 
     def polygon(
-        self, outline: Floats, paint: ArrayLike, strength: float = 1.0, softness: float = 0.0, within: Singles | None = None
+        self,
+        outline: Floats,
+        paint: ArrayLike,
+        strength: float = 1.0,
+        softness: float = 0.0,
+        within: Singles | None = None,
     ) -> None:
         """Fill an outline (k, 2) px; ``softness`` is the sigma of its edge, ``within`` a cover (h, w) times it."""
         self._paint([outline], paint, strength, softness, within)
@@ -74,7 +79,9 @@ class Canvas:
         for outline in outlines:
             corners = ((outline - low + 0.5) * _FINER - 0.5) * 2**_SUBPIXELS
             cv2.fillPoly(layer, [np.rint(corners).astype(np.int32)], 255, cv2.LINE_8, _SUBPIXELS)
-        cover = cv2.resize(layer, (width, height), interpolation=cv2.INTER_AREA).astype(np.float32) / 255
+        cover = np.asarray(cv2.resize(layer, (width, height), interpolation=cv2.INTER_AREA), np.float32) / np.float32(
+            255
+        )
         return box, blurred(cover, softness) if softness > 0 else cover
 
     def _paint(

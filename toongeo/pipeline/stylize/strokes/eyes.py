@@ -107,7 +107,9 @@ def _iris_place(eye: _Eye, middle: Floats, style: Style) -> tuple[tuple[float, f
     radius = max(0.5 * style.iris * eye.width, (0.52 if style.big_eyes else 0.48) * eye.height)
     radius = min(radius, _WIDEST * eye.width)
     x, y = float(middle @ eye.across), float(middle @ eye.down)
-    heights = [np.interp(x, (lid - eye.corner) @ eye.across, (lid - eye.corner) @ eye.down) for lid in (eye.upper, eye.lower)]
+    heights = [
+        np.interp(x, (lid - eye.corner) @ eye.across, (lid - eye.corner) @ eye.down) for lid in (eye.upper, eye.lower)
+    ]
     top, bottom = heights[0] + 0.55 * radius, max(heights[0] + 0.80 * radius, heights[1] - 0.8 * radius)
     return (x, float(np.clip(y, top, bottom))), radius
 

@@ -43,7 +43,9 @@ def draw_nose(canvas: Canvas, subject: Subject, style: Style, pens: Pens) -> Non
             )
             lines.append((line, width * taper(len(line), 0.6, 0.3)))
         for near, far in ((32, 31), (34, 35)):
-            line = curve(np.vstack([0.8 * points[near] + 0.2 * points[far], 0.45 * points[near] + 0.55 * points[far]]), 8)
+            line = curve(
+                np.vstack([0.8 * points[near] + 0.2 * points[far], 0.45 * points[near] + 0.55 * points[far]]), 8
+            )
             lines.append((line, 1.8 * width * taper(len(line), 0.4, 0.4)))
     for line, half in lines:
         canvas.ribbon(line, half, pens.line, style.nose, softness)

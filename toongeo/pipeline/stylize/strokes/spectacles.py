@@ -5,6 +5,7 @@ import numpy as np
 
 from toongeo.arrays import Floats, Mask, Singles
 from toongeo.pipeline.parse.masks import filled, grown
+from toongeo.pipeline.stylize.appearance.pixels import hull_of, placed_in
 from toongeo.pipeline.stylize.appearance.subject import Subject
 
 __all__ = ["long_lines"]
@@ -22,7 +23,7 @@ _FEATURES = (  # landmarks and how far around them lines are those of features, 
 
 def long_lines(response: Singles, subject: Subject, least: float) -> Singles:
     """The line response (h, w) of the reduced picture where a long line crosses the face, elsewhere 0."""
-    points = (subject.landmarks + 0.5) * subject.factor - 0.5
+    points = placed_in(subject.landmarks, subject.factor)
     size = subject.size * subject.factor
     strong = (response > least) & (subject.skin.hull > 0.5) & ~_features(response.shape, points, size)
     count, parts, stats, _ = cv2.connectedComponentsWithStats(strong.astype(np.uint8), connectivity=8)
@@ -34,5 +35,5 @@ def long_lines(response: Singles, subject: Subject, least: float) -> Singles:
 def _features(shape: tuple[int, ...], points: Floats, size: float) -> Mask:
     mask = np.zeros(shape, bool)
     for part, margin in _FEATURES:
-        mask |= grown(filled(shape, cv2.convexHull(points[list(part)].astype(np.float32))[:, 0]), margin * size)
+        mask |= grown(filled(shape, hull_of(points[list(part)])), margin * size)
     return mask
