@@ -42,7 +42,7 @@ class Avatar(AvatarStages):
     """What :func:`toongeo.make_avatar` builds; every stage's result is kept.
 
     Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
-    ``eyes``, ``texture``, ``report`` and ``hair``.
+    ``eyes``, ``texture``, ``report``, ``hair`` and ``style``.
     """
 
     __repr__ = brief_repr
