@@ -14,6 +14,7 @@ from toongeo.model.ibug68 import PARTS
 from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.outline_paths import outline_landmarks, outline_paths
+from toongeo.reading.check_file import file_bytes
 
 __all__ = ["load_eos"]
 
