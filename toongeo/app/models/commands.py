@@ -18,7 +18,9 @@ def add_model(commands: Any) -> None:
         verb.add_argument("path", type=Path, metavar="PATH", help="a file or folder of a model")
         verb.add_argument("--format", metavar="NAME", help="of the model (default: told by its content)")
         verb.add_argument("--landmarks", type=Path, metavar="FILE", help="its 68 landmarks: .json .txt .npz .npy .pkl")
-        verb.add_argument("--cache", type=Path, metavar="NPZ", help="to keep what is read from the folder of ICT-FaceKit")
+        verb.add_argument(
+            "--cache", type=Path, metavar="NPZ", help="to keep what is read from the folder of ICT-FaceKit"
+        )
         if name in ("convert", "render"):
             what = ".npz" if name == "convert" else ".png, .jpg"
             verb.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=what)
@@ -56,7 +58,7 @@ def _convert(options: argparse.Namespace) -> None:
     from toongeo.app.check_output import check_output
     from toongeo.model import save_model
 
-    check_output(options.output, (".npz",), inputs=(options.path,))
+    check_output(options.output, {"path": options.path})
     model = _loaded(options)
     model = model.with_rig_of() if options.rig else model
     model = model.with_contours() if options.contours else model
@@ -69,7 +71,7 @@ def _render(options: argparse.Namespace) -> None:
     from toongeo.app.models.model_sheet import model_sheet
     from toongeo.io import write_image
 
-    check_output(options.output, (".png", ".jpg"), inputs=(options.path,))
+    check_output(options.output, {"path": options.path})
     write_image(options.output, model_sheet(_loaded(options)))
     print(options.output)
 
