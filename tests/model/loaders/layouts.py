@@ -55,11 +55,11 @@ def _columns(modes):
     return modes.reshape(len(modes), -1).T
 
 
-def _mat(variables):
+def _mat(variables, compressed=False):
     import scipy.io
 
     stream = io.BytesIO()
-    scipy.io.savemat(stream, variables, do_compression=True)
+    scipy.io.savemat(stream, variables, do_compression=compressed)
     return stream.getvalue()
 
 
@@ -77,7 +77,8 @@ def bfm2009(face, path):
         "shapeEV": ev, "texMU": 255 * face.colour.reshape(-1, 1), "texPC": _columns(face.albedo),
         "texEV": np.full((A, 1), 255.0), "tl": face.faces[:, ::-1] + 1.0, "segbin": np.ones((N, 4)),
     }  # fmt: skip
-    path.write_bytes(_mat({k: np.asarray(v, np.float32 if "PC" in k else float) for k, v in variables.items()}))
+    arrays = {k: np.asarray(v, np.float32 if "PC" in k else float) for k, v in variables.items()}
+    path.write_bytes(_mat(arrays, compressed=True))
     return path
 
 

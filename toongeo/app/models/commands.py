@@ -18,7 +18,9 @@ def add_model(commands: Any) -> None:
         verb.add_argument("path", type=Path, metavar="PATH", help="a file or folder of a model")
         verb.add_argument("--format", metavar="NAME", help="of the model (default: told by its content)")
         verb.add_argument("--landmarks", type=Path, metavar="FILE", help="its 68 landmarks: .json .txt .npz .npy .pkl")
-        verb.add_argument("--cache", type=Path, metavar="NPZ", help="to keep what is read from the folder of ICT-FaceKit")
+        verb.add_argument(
+            "--cache", type=Path, metavar="NPZ", help="to keep what is read from the folder of ICT-FaceKit"
+        )
         if name in ("convert", "render"):
             what = ".npz" if name == "convert" else ".png, .jpg"
             verb.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=what)

@@ -20,7 +20,7 @@ def continued(
 ) -> NDArray[np.float32]:
     """Fields (k, n, 3) that keep their values where known, and go on as smoothly as can be elsewhere.
 
-    They minimise the energy of a thin plate under tension, ``sum |L u|^2 / A + u . L u / l^2`` with a length l of 12 mm:
+    They minimise the energy of a thin plate under tension, ``sum |L u|^2 / A + u . L u / l^2``, l = 12 mm:
     smooth across the border of what is known, and constant far from it. Pieces of the surface of which nothing is known
     keep what they have.
 

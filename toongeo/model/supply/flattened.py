@@ -95,7 +95,7 @@ def _disc(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArray[np.float64] |
 def _tutte(F: NDArray[np.int64], border: NDArray[np.int64], circle: NDArray[np.float64], n: int) -> NDArray[np.float64]:
     """Each inner vertex in the middle of its neighbours."""
     A = adjacency(F, n)
-    L = sp.csr_array(sp.diags_array(np.maximum(A.sum(axis=1), 1).ravel()) - A)
+    L = sp.csr_array(sp.diags_array(np.maximum(np.asarray(A.sum(axis=1)).ravel(), 1)) - A)
     inner = np.setdiff1d(np.arange(n), border)
     flat = np.zeros((n, 2))
     flat[border] = circle

@@ -134,7 +134,7 @@ def _without_gaps(template: MorphableModel, registration: RegisteredMesh) -> NDA
 
 
 def _well_inside(known: NDArray[np.bool_], template: MorphableModel) -> NDArray[np.bool_]:
-    """What is known, without its rim outside the features: partners at the end of a surface are its border, or beyond."""
+    """What is known, without its rim outside the features, where partners are the border of a surface or beyond it."""
     inside, graph = known.copy(), adjacency(template.faces, len(known))
     kept = known & template.region("face") & ~template.region("forehead")
     for _ in range(_RIM_RINGS):

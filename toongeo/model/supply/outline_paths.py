@@ -11,12 +11,18 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.ibug68 import PARTS
+from toongeo.geometry import vertex_normals
+from toongeo.model.ibug68 import OUTER_EYES, PARTS
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.model.supply.eye_frame import EYE_DEPTH_MM
 
 __all__ = ["outline_landmarks", "outline_paths", "with_contours"]
 
-_BRIDGE = range(27, 31)
+_BRIDGE, _NOSE_BASE, _LOWER_LIP = range(27, 31), 33, 57
+_CHIN = 1.3  # of the height from lower lip to nose: as far below the lip a chin ends, with a margin for long ones
+# How far behind the eyes, in outer-eye distances, paths end: under the chin, and at the ears. Behind are neck and nape.
+_ENDS = 0.3, 0.95
+_CORNERS = 36, 39, 42, 45  # of the eyes
 _SECTOR = np.radians(4.0)  # about a direction: half of what lies between two jaw points would be 5.6 degrees
 _STEP_MM = 5.0  # of depth between two vertices of a path: as of the template's lines
 _LEAST_RADIUS = 0.6  # of the outline's own in that direction: what lies nearer to the nose is never the outline
@@ -38,18 +44,23 @@ def with_contours(model: MorphableModel) -> MorphableModel:
 def outline_landmarks(model: MorphableModel, landmarks: NDArray[np.int64]) -> NDArray[np.int64]:
     """Vertices (17,) on the outline of the mean as the camera in front sees it.
 
-    In 17 directions from the bridge of the nose, at equal angles from the height of the eyes round the chin, the vertex
-    that is farthest away in the picture.
+    In 17 directions from the bridge of the nose, at equal angles from the height of the eyes round the chin, the first
+    vertex of a path of :func:`outline_paths` that turns away from the camera; the farthest one of a path that does not.
     """
-    _, radius, near = _directions(model, landmarks)
-    return np.array([rows[np.argmax(radius[rows])] for rows in near])
+    _, radius, _ = _directions(model, landmarks)
+    away = vertex_normals(model.mean, model.faces)[:, 2] <= 0
+    found = []
+    for line in outline_paths(model, landmarks):
+        found.append(line[away[line].argmax()] if away[line].any() else line[np.argmax(radius[line])])
+    return np.array(found, np.int64)
 
 
 def outline_paths(model: MorphableModel, landmarks: NDArray[np.int64]) -> tuple[NDArray[np.int64], ...]:
     """For each jaw point the vertices on which it can lie, from the front to the back of the head.
 
     In the direction of a jaw point, at steps of depth, the vertex that is farthest from the middle of the face: where
-    the outline passes when the head turns. Lines begin on the cheek and end behind the ear, or where the mesh does.
+    the outline passes when the head turns. Lines begin on the cheek and end at the ear and under the chin, or where
+    the mesh does.
 
     Parameters
     ----------
@@ -70,9 +81,13 @@ def outline_paths(model: MorphableModel, landmarks: NDArray[np.int64]) -> tuple[
     """
     _, radius, near = _directions(model, landmarks)
     depth = model.mean[:, 2]
+    eyes = float(np.linalg.norm(np.subtract(*model.mean[landmarks[list(OUTER_EYES)]])))
+    middle = model.mean[landmarks[list(_CORNERS)], 2].mean() - EYE_DEPTH_MM
+    back = middle - eyes * np.interp(np.abs(np.arange(17) - 8), (0, 8), _ENDS)
     paths = []
-    for rows in near:
+    for rows, end in zip(near, back, strict=True):
         rows = rows[radius[rows] > _LEAST_RADIUS * radius[rows].max()]
+        rows = rows[depth[rows] > end] if (depth[rows] > end).any() else rows
         step = np.floor(depth[rows] / _STEP_MM)
         line = [rows[step == s][np.argmax(radius[rows[step == s]])] for s in np.unique(step)[::-1]]
         paths.append(np.array(line, np.int64))
@@ -87,7 +102,8 @@ def _directions(
         raise ValueError("model: expected one with landmarks, got one without: model.with_landmarks(vertices)")
     away = (model.mean - model.mean[landmarks[list(_BRIDGE)]].mean(axis=0))[:, :2]
     angle, radius = np.arctan2(away[:, 1], away[:, 0]), np.hypot(*away.T)
-    skin = model.region("skin")
+    nose, lip = (model.mean[landmarks[k], 1] for k in (_NOSE_BASE, _LOWER_LIP))
+    skin = model.region("skin") & (model.mean[:, 1] > lip - _CHIN * (nose - lip))
     near = []
     for k in range(len(PARTS["jaw"])):
         off = np.abs((angle - (-np.pi + k * np.pi / 16) + np.pi) % (2 * np.pi) - np.pi)
