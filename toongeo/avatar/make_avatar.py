@@ -41,7 +41,8 @@ from toongeo.pipeline.align.size_teeth import size_teeth
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
 from toongeo.pipeline.texture.bake_texture import check_size
-from toongeo.protocols import FaceParser, HairModeler
+from toongeo.plugins import plugin
+from toongeo.protocols import FaceParser, HairModeler, LandmarkDetector
 
 __all__ = ["STAGES", "make_avatar"]
 
@@ -57,7 +58,8 @@ def make_avatar(
     landmarks: np.ndarray | None = None,
     *,
     model: MorphableModel | None = None,
-    parser: FaceParser | None = None,
+    detector: str | LandmarkDetector | None = None,
+    parser: str | FaceParser | None = None,
     noise: Noise = "auto",
     snap: bool = False,
     photometric: bool = False,
@@ -82,8 +84,11 @@ def make_avatar(
     model : MorphableModel, optional
         :func:`toongeo.default_model` unless another is given. What it does not have (eyeballs, teeth, expressions,
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
-    parser : FaceParser, optional
-        Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
+    detector : LandmarkDetector or str, optional
+        Finds the landmarks if none are given: see :func:`toongeo.detect_landmarks`.
+    parser : FaceParser or str, optional
+        Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given, or the
+        name of one that an installed package offers (:mod:`toongeo.plugins`).
     noise : "auto" or float
         Of the landmarks, in outer-eye distances: see :func:`toongeo.align_face`. What was found and done about it is in
         ``face.report.noise`` and, in words, in ``report.warnings``.
@@ -147,7 +152,7 @@ def make_avatar(
     clock.start("fit")
     doubts: tuple[str, ...] = ()
     if landmarks is None:
-        found = detect_landmarks(img)
+        found = detect_landmarks(img, detector=detector)
         landmarks, scheme, doubts = found.points, "ibug68", detection_warnings(found)
     model = model or default_model()
     if isinstance(scheme, str):
@@ -162,7 +167,7 @@ def make_avatar(
         fit = fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
     drawn, faults = read_mask(hair_mask, img.shape)
-    parse = parse_face(img, landmarks, fit, parser=parser, hair_mask=drawn)
+    parse = parse_face(img, landmarks, fit, parser=plugin(parser, "parser"), hair_mask=drawn)
     if snap:
         clock.start("fit")
         landmarks = snap_eyes(landmarks, parse)
