@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from toongeo.app.check_output import check_output
+from toongeo.app.commands.path_is import path_is
 from toongeo.app.landmark_source import LandmarkSource
 from toongeo.arrays import Floats
 from toongeo.editing import ExpressionEditor
@@ -46,7 +47,8 @@ def edit(
     if not weights and not absolute:
         raise ValueError("weights: expected an expression, such as --smile 0.5 or --weights jawOpen=0.3")
     wanted = expression_weights(weights)
-    img = read_image(image)
+    with path_is("image"):
+        img = read_image(image)
     points, found = source.landmarks(image, img)
     if isinstance(found, LandmarkFile):
         print(found.message)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo._read_only import read_only, restored
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.parts import INNER_PARTS
@@ -92,6 +93,7 @@ class MorphableModel:
     prior: FacePrior | None = None
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
     __setstate__ = restored
 
     def __post_init__(self) -> None:

@@ -41,6 +41,7 @@ def no_work(monkeypatch, tmp_path):
         (["-o", "a.glb", "--sheet", "folder.png"], "--sheet: cannot write folder.png: it is a folder"),
         (["-o", "a.glb", "--sheet", PICTURE], "--sheet: expected no file that is read"),
         (["-o", "a.glb", "--same-person"], "--same-person: expected several pictures, got 1"),
+        (["-o", "a.glb", "--landmarks", PICTURE], "--landmarks: expected .pts"),
         (["-o", "a.glb", "--landmarks", "folder.glb"], "--landmarks: expected a file for blue_girl.png"),
     ],
 )

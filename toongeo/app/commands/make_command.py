@@ -25,7 +25,7 @@ def add_make(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     make.add_argument("--json", action="store_true", help="print the report as JSON; a list for several pictures")
     _add_making(make)
     _add_saving(make)
-    make.set_defaults(run=_make, also={"path": "--output", "meta": "--author", "size": "--texture-size"})
+    make.set_defaults(run=_make, also={"meta": "--author", "size": "--texture-size"})
 
 
 def _add_making(make: argparse.ArgumentParser) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from toongeo._brief_repr import brief_repr
+from toongeo.app.commands.path_is import path_is
 from toongeo.avatar.save_avatar import writer_for
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
@@ -54,7 +55,8 @@ class MakeOptions:
         ValueError, ImportError
             As :func:`toongeo.make_avatar` and :meth:`toongeo.Avatar.save`, before any work.
         """
-        writer_for(output, self.format, self.saving)
+        with path_is("output"):
+            writer_for(output, self.format, self.saving)
         check_noise(self.noise)
         check_size(self.texture_size)
         if output.suffix.lower() == ".vrm" and self.model is not None and not self.model.has("eyes"):
