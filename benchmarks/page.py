@@ -4,8 +4,9 @@ usage: python benchmarks/page.py [--realtime]
 (needs Chromium, and `npm ci --prefix tests/web`; --realtime lets the browser go before all else on a busy machine, with
 `chrt`, as root)
 
-first frame, s: from the address to the first frame, by the page's own clock, in Chromium without a graphics card. CPU s until then, of the page's process and of the one that stands in for
-the graphics card: these do not depend on how busy the machine is.
+first frame, s: from the address to the first frame, by the page's own clock, in Chromium without a graphics card. CPU
+s until then, of the page's process and of the one that stands in for the graphics card: these do not depend on how
+busy the machine is.
 """
 
 import os

@@ -7,13 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from toongeo import __version__
+from toongeo.app.batch import add_batch
 from toongeo.app.bench.commands import add_bench
 from toongeo.app.commands.completion import add_completion
 from toongeo.app.commands.edit_command import add_edit
 from toongeo.app.commands.flags import in_flags, know_flags
 from toongeo.app.commands.make_command import add_make
 from toongeo.app.commands.number_types import port
-from toongeo.app.commands.picture_arguments import SCHEME
+from toongeo.app.commands.performance_commands import add_performances
+from toongeo.app.models.commands import add_model
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
 __all__ = ["main"]
@@ -76,8 +78,9 @@ def _parser() -> argparse.ArgumentParser:
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)
+    add_batch(commands)
     _add_landmarks_editor(commands)
-    _add_drive(commands)
+    add_performances(commands)
     _add_serve(commands)
     view = commands.add_parser("view", help="show an avatar in the browser")
     view.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb")
@@ -96,6 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     rig.add_argument("--texture", type=Path, metavar="IMAGE", help="picture for the mesh's texture coordinates")
     rig.set_defaults(run=_rig)
     add_bench(commands)
+    add_model(commands)
     add_completion(commands, parser)
     _add_debug(parser)
     know_flags(parser)
@@ -121,23 +125,6 @@ def _add_landmarks_editor(commands: Any) -> None:
     editor.add_argument("--port", type=port, default=0, metavar="N", help="default: a free one")
     editor.add_argument("--no-open", action="store_true", help="only print where the page is")
     editor.set_defaults(run=_landmarks)
-
-
-def _add_drive(commands: Any) -> None:
-    drive = commands.add_parser("drive", help="play a performance on an avatar: a video, an animated GLB, or a table")
-    drive.add_argument("avatar", type=Path, metavar="AVATAR", help=".glb of toongeo make")
-    source = drive.add_mutually_exclusive_group(required=True)
-    source.add_argument("--weights", type=Path, metavar="TAKE", help="Live Link Face .csv, or .npy (frames, 52 or 54)")
-    source.add_argument("--landmarks", type=Path, metavar="TAKE", help=".npy .csv .json .xml, the first frame neutral")
-    source.add_argument("--video", type=Path, metavar="FILM", help="of an actor whose face is followed: .mp4, .mov ...")
-    drive.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="OUT", help=".mp4, .glb, or .csv of Live Link Face"
-    )
-    drive.add_argument("--size", type=int, default=512, metavar="N", help="side of the video (default 512)")
-    drive.add_argument("--fps", type=float, default=30.0, help="of the output (default 30)")
-    drive.add_argument("--scheme", default="auto", metavar="NAME", help=SCHEME)
-    drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
-    drive.set_defaults(run=_drive, also={"path": "AVATAR"})
 
 
 def _add_serve(commands: Any) -> None:
@@ -178,14 +165,6 @@ def _landmarks(options: argparse.Namespace) -> None:
         port=options.port,
         show=not options.no_open,
     )
-
-
-def _drive(options: argparse.Namespace) -> None:
-    from toongeo.app.drive import drive
-    from toongeo.app.read_take import TakeSource
-
-    source = TakeSource(options.weights, options.landmarks, options.video, options.take_fps, options.scheme)
-    drive(options.avatar, options.output, source, size=options.size, fps=options.fps)
 
 
 def _serve(options: argparse.Namespace) -> None:

@@ -8,7 +8,7 @@ __all__ = ["load_websockets"]
 
 
 def load_websockets() -> SimpleNamespace:
-    """``serve``, ``broadcast``, ``connect`` and the errors ``ConnectionClosed`` and ``InvalidStatus``.
+    """``serve``, ``broadcast``, ``connect`` and the errors ``ConnectionClosed``, ``InvalidStatus`` and so on.
 
     Raises
     ------
@@ -21,7 +21,9 @@ def load_websockets() -> SimpleNamespace:
         broadcast=server.broadcast,
         connect=client.connect,
         ConnectionClosed=errors.ConnectionClosed,
+        InvalidHandshake=errors.InvalidHandshake,
         InvalidStatus=errors.InvalidStatus,
+        InvalidURI=errors.InvalidURI,
     )
 
 

@@ -69,7 +69,7 @@ def test_names_that_would_be_one_file(tmp_path, capsys):
 
 def test_options_reach_the_library(stand_in, tmp_path, monkeypatch):
     model = object()
-    monkeypatch.setattr("toongeo.app.making.read_model.read_model", lambda path: model)
+    monkeypatch.setattr("toongeo.app.commands.make_command._model", lambda path: model)
     monkeypatch.setattr("toongeo.app.making.make_options.MakeOptions.check", lambda *_: None)
     out = ["-o", str(tmp_path / "a.ply"), "--landmarks", POINTS]
     more = ["--method", "caricature", "--rig", "caricature", "--model", "m.npz", "--crop", "face"]
@@ -118,10 +118,3 @@ def test_the_fits_of_one_person_are_used(folder, stand_in, tmp_path, monkeypatch
     arguments = ["--landmarks", str(folder), "-o", str(tmp_path / "{name}.ply"), "--same-person"]
     assert main(["make", str(folder), *arguments]) == 0
     assert [options["fit"] for _, _, options in stand_in] == ["one", "two"]
-
-
-def test_a_foreign_model_is_read(shared):
-    from toongeo.app.making.read_model import read_model
-
-    models = shared / "data" / "models"
-    assert read_model(models / "ict_facekit" / "ict_facekit_light.npz").n_named == 57

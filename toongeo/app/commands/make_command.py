@@ -63,10 +63,9 @@ def _make(options: argparse.Namespace) -> None:
     from toongeo.app.making.head_jobs import check_jobs, head_jobs
     from toongeo.app.making.make_heads import make_heads
     from toongeo.app.making.make_options import MakeOptions
-    from toongeo.app.making.read_model import read_model
 
     making = MakeOptions(
-        model=None if options.model is None else read_model(options.model),
+        model=None if options.model is None else _model(options.model),
         noise=options.noise,
         snap=options.snap,
         photometric=options.photometric,
@@ -84,6 +83,15 @@ def _make(options: argparse.Namespace) -> None:
     jobs = head_jobs(options.image, options.output, options.landmarks, options.sheet, suffix=suffix)
     check_jobs(jobs, making, one=options.same_person)
     make_heads(jobs, source, making, one=options.same_person)
+
+
+def _model(path: Path) -> Any:
+    from toongeo.model import load_model
+
+    try:
+        return load_model(path)
+    except ValueError as error:  # of its own landmarks, say, which are not those of --landmarks
+        raise ValueError(f"model: {str(error).removeprefix('path: ')}") from error
 
 
 def _saving(options: argparse.Namespace) -> dict[str, Any]:
