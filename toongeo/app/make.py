@@ -69,6 +69,8 @@ def make(
         avatar = make_avatar(img, points, progress=announce, **given)
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")
+    if avatar.style is not None:
+        img, points = avatar.style.img, avatar.style.landmarks
     made = MadeHead(job, avatar, _held_out(img, points, options))
     avatar.save(job.output, format=options.format, **options.saving)
     if job.sheet is not None:

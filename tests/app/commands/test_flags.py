@@ -63,7 +63,7 @@ def test_make_refuses_before_the_work(more, message, tmp_path, capsys):
     [
         (["-o", "a.glb"], "--output: expected a folder for several pictures, or a name with {name} in it"),
         (["-o", "heads", "--landmarks", POINTS], "--landmarks: expected a folder of files for several pictures"),
-        (["-o", "heads", "--same-person", "--snap"], "--same-person: expected no --snap and no --photometric"),
+        (["-o", "heads", "--same-person", "--snap"], "--same-person: expected no --snap, --photometric or --style"),
         (["-o", "heads/{name}.fbx"], "--output: expected a name that ends in .glb"),
         (["-o", "heads", "--sheet", "sheet.png"], "--sheet: expected a folder for several pictures"),
         (["-o", "heads", "--sheet", "none/sheets"], "--sheet: no folder none/sheets"),

@@ -34,6 +34,8 @@ def _add_making(make: argparse.ArgumentParser) -> None:
     make.add_argument("--method", choices=("cartoon", "caricature"), default="cartoon", help=methods)
     rigs = "whose expressions it has: the template's, transferred (default), or its own, from exaggerated landmarks"
     make.add_argument("--rig", choices=("transfer", "caricature"), default="transfer", help=rigs)
+    styles = "draw the picture first"
+    make.add_argument("--style", choices=("toon", "chibi", "caricature", "ink", "painted"), help=styles)
     noise = "of the landmarks, in outer-eye distances; 0: exact (default auto: smoothed where they are plainly noisy)"
     make.add_argument("--noise", type=sigma, default="auto", metavar="SIGMA", help=noise)
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
@@ -71,6 +73,7 @@ def _make(options: argparse.Namespace) -> None:
         photometric=options.photometric,
         method=options.method,
         rig=options.rig,
+        style=options.style,
         hair=not options.no_hair,
         hair_mask=options.hair_mask,
         texture_size=options.texture_size,

@@ -23,7 +23,7 @@ class MakeOptions:
 
     Attributes
     ----------
-    model, noise, snap, photometric, method, rig, hair, hair_mask, texture_size
+    model, noise, snap, photometric, method, rig, style, hair, hair_mask, texture_size
         Of :func:`toongeo.make_avatar`; the mask is a file.
     format : str, optional
     saving : Mapping
@@ -38,6 +38,7 @@ class MakeOptions:
     photometric: bool = False
     method: Literal["cartoon", "caricature"] = "cartoon"
     rig: Literal["transfer", "caricature"] = "transfer"
+    style: str | None = None
     hair: bool = True
     hair_mask: Path | None = None
     texture_size: int = 1024
@@ -64,5 +65,6 @@ class MakeOptions:
 
     def making(self) -> dict[str, Any]:
         """Arguments of :func:`toongeo.make_avatar`."""
-        names = ("model", "noise", "snap", "photometric", "method", "rig", "hair", "hair_mask", "texture_size")
+        names: tuple[str, ...] = ("model", "noise", "snap", "photometric", "method", "rig", "style")
+        names += ("hair", "hair_mask", "texture_size")
         return {name: getattr(self, name) for name in names}
