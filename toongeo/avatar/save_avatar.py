@@ -34,7 +34,7 @@ from toongeo.io.writers.write_usdz import usd_modules
 from toongeo.model.expression_schemes import PRESETS, SCHEMES
 from toongeo.pipeline import Rig
 
-__all__ = ["avatar_attachment", "page_presets", "rig_arrays", "save_avatar", "writer_for"]
+__all__ = ["avatar_attachment", "avatar_page", "page_presets", "rig_arrays", "save_avatar", "writer_for"]
 
 _Weights = Mapping[str, float]
 _Texture = Literal["png", "jpeg"] | None
@@ -216,6 +216,22 @@ def _write_html(
     animation: _Animation = "demo",
     title: str | None = None,
 ) -> None:
+    name = path.stem if title is None else title
+    page = avatar_page(avatar, name, crop=crop, quantize=quantize, texture=texture, animation=animation)
+    atomic_write({path: page.encode("utf-8")})
+
+
+def avatar_page(
+    avatar: AvatarStages,
+    title: str,
+    *,
+    crop: Crop = "head",
+    quantize: bool = True,
+    texture: _Texture = "png",
+    animation: _Animation = "demo",
+    framed: bool = False,
+) -> str:
+    """The page of an avatar; ``framed`` as of :func:`toongeo.io.page_html`, the other options as ``.html`` has them."""
     scene = avatar_scene(
         avatar,
         crop=crop,
@@ -224,8 +240,7 @@ def _write_html(
     )
     tolerance = _COARSE_MM if quantize else _EXACT_MM
     glb = encode_glb(scene, tolerance_mm=tolerance, quantize=quantize, picture=texture or "png")
-    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets(avatar.rig))
-    atomic_write({path: page.encode("utf-8")})
+    return page_html(glb, title=title, presets=page_presets(avatar.rig), framed=framed)
 
 
 def page_presets(rig: Rig | None = None) -> dict[str, _Weights]:

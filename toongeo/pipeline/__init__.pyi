@@ -7,6 +7,7 @@ from toongeo.pipeline.align import LandmarkNoise as LandmarkNoise
 from toongeo.pipeline.align import align_face as align_face
 from toongeo.pipeline.align import denoise_landmarks as denoise_landmarks
 from toongeo.pipeline.align import fit_cranium as fit_cranium
+from toongeo.pipeline.align import held_out_errors as held_out_errors
 from toongeo.pipeline.fit import FaceFit as FaceFit
 from toongeo.pipeline.fit import FitOptions as FitOptions
 from toongeo.pipeline.fit import JawOptions as JawOptions

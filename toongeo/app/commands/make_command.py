@@ -25,7 +25,7 @@ def add_make(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     make.add_argument("--json", action="store_true", help="print the report as JSON; a list for several pictures")
     _add_making(make)
     _add_saving(make)
-    make.set_defaults(run=_make, also={"path": "--output", "meta": "--author", "size": "--texture-size"})
+    make.set_defaults(run=_make, also={"meta": "--author", "size": "--texture-size"})
 
 
 def _add_making(make: argparse.ArgumentParser) -> None:
@@ -34,6 +34,8 @@ def _add_making(make: argparse.ArgumentParser) -> None:
     make.add_argument("--method", choices=("cartoon", "caricature"), default="cartoon", help=methods)
     rigs = "whose expressions it has: the template's, transferred (default), or its own, from exaggerated landmarks"
     make.add_argument("--rig", choices=("transfer", "caricature"), default="transfer", help=rigs)
+    styles = "draw the picture first"
+    make.add_argument("--style", choices=("toon", "chibi", "caricature", "ink", "painted"), help=styles)
     noise = "of the landmarks, in outer-eye distances; 0: exact (default auto: smoothed where they are plainly noisy)"
     make.add_argument("--noise", type=sigma, default="auto", metavar="SIGMA", help=noise)
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
@@ -63,15 +65,15 @@ def _make(options: argparse.Namespace) -> None:
     from toongeo.app.making.head_jobs import check_jobs, head_jobs
     from toongeo.app.making.make_heads import make_heads
     from toongeo.app.making.make_options import MakeOptions
-    from toongeo.app.making.read_model import read_model
 
     making = MakeOptions(
-        model=None if options.model is None else read_model(options.model),
+        model=None if options.model is None else _model(options.model),
         noise=options.noise,
         snap=options.snap,
         photometric=options.photometric,
         method=options.method,
         rig=options.rig,
+        style=options.style,
         hair=not options.no_hair,
         hair_mask=options.hair_mask,
         texture_size=options.texture_size,
@@ -84,6 +86,15 @@ def _make(options: argparse.Namespace) -> None:
     jobs = head_jobs(options.image, options.output, options.landmarks, options.sheet, suffix=suffix)
     check_jobs(jobs, making, one=options.same_person)
     make_heads(jobs, source, making, one=options.same_person)
+
+
+def _model(path: Path) -> Any:
+    from toongeo.model import load_model
+
+    try:
+        return load_model(path)
+    except ValueError as error:  # of its own landmarks, say, which are not those of --landmarks
+        raise ValueError(f"model: {str(error).removeprefix('path: ')}") from error
 
 
 def _saving(options: argparse.Namespace) -> dict[str, Any]:

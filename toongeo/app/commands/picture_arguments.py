@@ -20,5 +20,5 @@ def add_landmarks(command: argparse.ArgumentParser) -> None:
 
 def add_model(command: argparse.ArgumentParser) -> None:
     """A morphable model from elsewhere."""
-    models = "a morphable model: .npz of ICT-FaceKit, or .bin of eos with ibug_to_sfm.txt beside it"
-    command.add_argument("--model", type=Path, metavar="FILE", help=models)
+    models = "a morphable model, as toongeo model takes it: BFM, FLAME, ICT-FaceKit, eos ..."
+    command.add_argument("--model", type=Path, metavar="PATH", help=models)
