@@ -66,8 +66,8 @@ def avatar_scene(
     -------
     Scene
         Meshes ``head``, ``teeth``, ``tongue``, ``eye_left`` and ``eye_right``, which share one texture, and ``hair``
-        with its own, on the head, unless there is none or the crop is "face"; and ``neck_cap``, which closes the neck,
-        on the head as well. A model without the regions of teeth and tongue has them in the head.
+        with its own, on the head, unless there is none or the crop is "face"; and ``neck_cap``, which closes the
+        neck. A model without the regions of teeth and tongue has them in the head.
     """
     shapes = own_shapes(avatar.rig) if shapes is None else shapes
     model = avatar.face.model
@@ -168,7 +168,7 @@ def _hair(hair: Hair, face: AlignedFace) -> SceneMesh:
 def _cap(cap: Surface) -> SceneMesh:
     assert cap.colours is not None
     red, green, blue = cap.colours[0].tolist()
-    return SceneMesh("neck_cap", cap.vertices, cap.faces, color=(red, green, blue), parent="head")
+    return SceneMesh("neck_cap", cap.vertices, cap.faces, color=(red, green, blue))
 
 
 def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[SceneMesh]) -> SceneAnimation:

@@ -41,7 +41,7 @@ def flatness(avatar: AvatarStages) -> float:
     scale = max(1, round(grey.shape[0] / (2 * _SIZE)))
     grey = cv2.resize(grey, None, fx=1 / scale, fy=1 / scale, interpolation=cv2.INTER_AREA)
     texels = interpolate(found, atlas.uv_faces, uv_to_px(atlas.uv, *grey.shape)).reshape(-1, 2)
-    picture = np.asarray(sample_image(grey, texels)).reshape(_SIZE, _SIZE).astype(np.float32)
+    picture = np.rint(sample_image(grey, texels)).reshape(_SIZE, _SIZE).astype(np.float32)
     inside = model.region("face")[model.faces].all(axis=1)[found.face_ids] & found.mask
     inside = cv2.erode(inside.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool)
     across, down = (cv2.Sobel(picture, cv2.CV_32F, *order) for order in ((1, 0), (0, 1)))
