@@ -163,7 +163,7 @@ def test_frames_of_landmarks_without_a_face_are_held(tmp_path, avatar):
     [
         ({"--weights": "none.csv"}, "none.csv"),
         ({"--weights": "broken.csv"}, "expected columns named like ARKit's expressions, got Jaw"),
-        ({"--weights": "broken.npy"}, "broken.npy: expected an array of numbers"),
+        ({"--weights": "broken.npy"}, "expected an array of numbers in NumPy's format, but broken.npy is damaged"),
         ({"--weights": "take.txt"}, "weights: expected a .csv or .npy file"),
         ({"-o": "take.avi"}, "output: expected a name that ends in .mp4, .webm, .glb, .csv"),
         ({"-o": "no/take.mp4"}, "output: no folder"),

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver, read_live_link, unit_weights
 from toongeo.io import read_landmark_frames, read_video
 from toongeo.model.expression_schemes import EXPRESSIONS
+from toongeo.reading.check_file import check_file
+from toongeo.reading.npy_array import npy_array
+from toongeo.reading.promise import promise
 
 __all__ = ["TakeSource", "read_landmark_take", "read_take"]
 
@@ -106,7 +109,6 @@ def read_landmark_take(path: Path, fps: float | None = None, *, scheme: str = "a
 
 
 def _array(path: Path) -> NDArray[np.float64]:
-    try:
-        return np.asarray(np.load(path, allow_pickle=False), np.float64)
-    except (ValueError, EOFError, TypeError) as error:
-        raise ValueError(f"{path}: expected an array of numbers in NumPy's format ({error})") from None
+    check_file(path)
+    with path.open("rb") as stream, promise(path, "an array of numbers in NumPy's format"):
+        return np.asarray(npy_array(stream, path.stat().st_size, kinds="biuf"), np.float64)

@@ -26,6 +26,7 @@ from toongeo.render import (
     Surface,
     render_mesh,
 )
+from toongeo.render.picture_size import picture_size
 
 if TYPE_CHECKING:
     import trimesh
@@ -41,7 +42,7 @@ class Avatar(AvatarStages):
     """What :func:`toongeo.make_avatar` builds; every stage's result is kept.
 
     Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
-    ``eyes``, ``texture``, ``report`` and ``hair``.
+    ``eyes``, ``texture``, ``report``, ``hair`` and ``style``.
     """
 
     __repr__ = brief_repr
@@ -147,6 +148,7 @@ class Avatar(AvatarStages):
         ValueError
             For weights as :meth:`vertices`; if the size is not positive.
         """
+        picture_size(size)
         camera = camera or self._camera(size, yaw, pitch)
         surfaces = self._closed(weights)
         if not textured:

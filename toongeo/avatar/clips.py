@@ -13,6 +13,7 @@ from toongeo.pipeline import Rig
 __all__ = ["demo_clip", "weight_clip"]
 
 _FRAMES_PER_SECOND = 30
+_LARGEST_WEIGHT, _LONGEST_S = 1e6, 1e6  # as of weights everywhere; eleven days
 # The clip: (seconds, weights reached then), linear in between.
 _CLIP: tuple[tuple[float, dict[str, float]], ...] = (
     (0.0, {}),
@@ -51,13 +52,20 @@ def weight_clip(rig: Rig, times: object, weights: object, turns: object = None) 
     Raises
     ------
     ValueError
-        If they are not of these shapes, or not finite.
+        If they are not of these shapes, not finite, or beyond what float32 of the file can hold in play.
     """
-    k, given = len(rig.names), np.asarray(weights, np.float64)
+    try:
+        k, given, at = len(rig.names), np.asarray(weights, np.float64), np.asarray(times, np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"animation: expected times (f,) and weights (f, k), got no numbers ({error})") from None
     whole = k + len(GAZE_NAMES)
     if given.ndim != 2 or given.shape[1] not in (k, whole):
         raise ValueError(f"animation: expected weights (f, {k}) or (f, {whole}), got shape {given.shape}")
+    if not (np.abs(given) <= _LARGEST_WEIGHT).all() or not (np.abs(at) <= _LONGEST_S).all():  # nor NaN
+        raise ValueError(
+            f"animation: expected finite weights up to {_LARGEST_WEIGHT:g} and times up to {_LONGEST_S:g} s"
+        )
     given = np.pad(given, ((0, 0), (0, whole - given.shape[1])))
     turning = None if turns is None else np.asarray(turns, np.float64)
     neck = None if turns is None else NECK_MM
-    return SceneAnimation(np.asarray(times, np.float64), {"head": given}, name="take", turns=turning, neck=neck)
+    return SceneAnimation(at, {"head": given}, name="take", turns=turning, neck=neck)

@@ -16,6 +16,7 @@ from toongeo.driving.table.times import frame_times
 from toongeo.driving.table.unit_weights import unit_weights
 from toongeo.driving.take import Take
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
+from toongeo.reading.promise import promised
 
 __all__ = ["read_live_link", "scheme_matrix"]
 
@@ -24,6 +25,7 @@ _FROM = {"interpolate": "around", "hold": "before"}
 _HEAD = ("HeadYaw", "HeadPitch", "HeadRoll")
 
 
+@promised("a table of weights")
 def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None, gaps: _Gaps = "interpolate") -> Take:
     """A take that the app Live Link Face has recorded, or another table of weights.
 
