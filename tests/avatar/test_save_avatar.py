@@ -140,7 +140,7 @@ def test_weights_over_time_become_the_animation(avatar, tmp_path, columns):
         ("a.glb", {"animation": "dance"}, "animation: expected 'demo', None, or times, weights and turns"),
         ("a.glb", {"animation": ([0.0], np.zeros((1, 52)))}, r"animation: expected weights \(f, 46\) or \(f, 54\)"),
         ("a.glb", {"animation": ([0.0, 0.0], np.zeros((2, 46)))}, "times: expected increasing seconds"),
-        ("a.glb", {"animation": ([0.0], np.full((1, 46), np.nan))}, "expected finite numbers"),
+        ("a.glb", {"animation": ([0.0], np.full((1, 46), np.nan))}, "expected finite weights up to"),
     ],
 )
 def test_bad_options_are_refused_and_nothing_is_written(avatar, tmp_path, path, options, message):
