@@ -37,6 +37,7 @@ CHOSEN_ON = {
     "eos": (*EXAMPLES, *PORTRAITS),  # the weight of the prior; in this comparison eos sets it
     "evidence": (*EXAMPLES, *CARICATURES, *PORTRAITS),  # the bound; the weights saw renders only
     "files": EXAMPLES,
+    "films": ("astronaut", "moustache_man"),  # where a frame needs more than one sample a pixel
     "looks": CHOOSING,
     "landmarks": (*EXAMPLES, *PORTRAITS),
     "lips": (*EXAMPLES, *CARICATURES),
