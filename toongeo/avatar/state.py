@@ -45,7 +45,7 @@ _CLASSES: dict[str, Any] = {
     )
 }
 # Fields that came later are left out where they are None: a file without them is as it was before.
-_LATER = ("hair", "noise")
+_LATER = ("hair", "noise", "mouth_opens")
 _VERSION = 1
 _MOST_BYTES = 1 << 30  # that a file may ask for
 
