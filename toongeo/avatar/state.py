@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from toongeo.avatar.field_types import check_field_types
 from toongeo.avatar.report import AvatarReport
 from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
@@ -178,7 +179,9 @@ class _Reader:
             return simple[kind][content]
         if kind == "model":
             return self.model
-        return _CLASSES[kind](**{name: self.value(part) for name, part in content.items()})
+        instance = _CLASSES[kind](**{name: self.value(part) for name, part in content.items()})
+        check_field_types(instance)
+        return instance
 
 
 def _packed(array: np.ndarray) -> bytes:
