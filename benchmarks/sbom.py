@@ -18,10 +18,11 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 SBOM = ROOT / "docs" / "sbom.cdx.json"
-_SHIPPED = ("usd", "serve", "notebook", "batch", "cluster")
+_SHIPPED = ("usd", "serve", "notebook", "video", "batch", "cluster")
 # Of packages that need not be installed where this runs, and of those that state a whole text.
 _LICENCES = {
     "anywidget": "MIT",
+    "av": "BSD-3-Clause",
     "distributed": "BSD-3-Clause",
     "joblib": "BSD-3-Clause",
     "libigl": "MPL-2.0",

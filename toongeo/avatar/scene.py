@@ -14,6 +14,7 @@ from toongeo.geometry import vertex_normals
 from toongeo.io import Scene, SceneAnimation, SceneMesh
 from toongeo.model import MorphableModel, atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES, gaze_names
+from toongeo.model.anatomy.neck import NECK_MM
 from toongeo.model.anatomy.parts import SIDES, TEETH
 from toongeo.pipeline import AlignedFace, Eyes, Hair, Rig
 from toongeo.render import sample_image, uv_to_px
@@ -113,7 +114,7 @@ def demo_clip(rig: Rig) -> SceneAnimation:
     return SceneAnimation(times, {"head": np.column_stack(columns)}, name="demo")
 
 
-def weight_clip(rig: Rig, times: object, weights: object) -> SceneAnimation:
+def weight_clip(rig: Rig, times: object, weights: object, turns: object = None) -> SceneAnimation:
     """Weights over time, for :func:`avatar_scene`.
 
     Parameters
@@ -122,6 +123,8 @@ def weight_clip(rig: Rig, times: object, weights: object) -> SceneAnimation:
     times : (f,) s, increasing, the first >= 0
     weights : (f, 46) or (f, 54)
         Of the rig's expressions, then of the ``eyeLook*`` names.
+    turns : (f, 4), optional
+        Unit quaternions x, y, z, w by which the head turns about its neck.
 
     Raises
     ------
@@ -140,7 +143,9 @@ def weight_clip(rig: Rig, times: object, weights: object) -> SceneAnimation:
             f"animation: expected finite weights up to {_LARGEST_WEIGHT:g} and times up to {_LONGEST_S:g} s"
         )
     given = np.pad(given, ((0, 0), (0, whole - given.shape[1])))
-    return SceneAnimation(at, {"head": given}, name="take")
+    turning = None if turns is None else np.asarray(turns, np.float64)
+    neck = None if turns is None else NECK_MM
+    return SceneAnimation(at, {"head": given}, name="take", turns=turning, neck=neck)
 
 
 def _part(avatar: AvatarStages, name: str, kept: np.ndarray, shapes: Shapes, crop: Crop) -> SceneMesh:
@@ -226,7 +231,7 @@ def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[Sc
         for mesh in meshes
         if mesh.target_names
     }
-    return SceneAnimation(animation.times, by_mesh, name=animation.name)
+    return replace(animation, weights=by_mesh)
 
 
 def _plain(mesh: SceneMesh) -> SceneMesh:

@@ -2,6 +2,8 @@
 
 from types import ModuleType, SimpleNamespace
 
+from toongeo._extras import missing_extra
+
 __all__ = ["load_websockets"]
 
 
@@ -31,5 +33,5 @@ def _modules() -> tuple[ModuleType, ModuleType, ModuleType]:
         import websockets.exceptions
         import websockets.sync.client
     except ImportError as error:
-        raise ImportError('live driving needs websockets: pip install "toongeo[serve]"') from error
+        raise ImportError(missing_extra("live driving", "serve")) from error
     return websockets.asyncio.server, websockets.sync.client, websockets.exceptions

@@ -34,7 +34,7 @@ def picture_size(size: object, supersample: int = 1) -> tuple[int, int]:
     """
     try:
         sides = tuple(size) if isinstance(size, tuple | list) else (size, size)
-        height, width = (operator.index(side) for side in sides if not isinstance(side, bool))  # type: ignore[call-overload]
+        height, width = (operator.index(side) for side in sides if not isinstance(side, bool))
     except (TypeError, ValueError):
         raise ValueError(f"size: expected positive (height, width) in px, or an integer, got {size!r}") from None
     if height < 1 or width < 1:
