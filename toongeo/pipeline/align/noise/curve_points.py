@@ -10,8 +10,8 @@ from toongeo.model.ibug68 import PARTS
 
 __all__ = ["curve_points", "with_curve_points"]
 
-# Open curves along which annotators space their points evenly. Rims of eyes and lips turn sharply at their corners: what
-# the motion of the face foretells is nearer there.
+# Open curves along which annotators space their points evenly. Rims of eyes and lips turn sharply at their corners:
+# what the motion of the face foretells is nearer there.
 _CURVES = (PARTS["jaw"], PARTS["brow_right"], PARTS["brow_left"], PARTS["nose"][:4], PARTS["nose"][4:])
 _SHARE = 0.5  # of the curve, against the motion: their errors are alike and hardly related
 _JAW_SHARE = 1.0  # how far along the jaw a point lies is a matter of spacing alone
