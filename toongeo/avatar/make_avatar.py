@@ -113,7 +113,9 @@ def make_avatar(
         Strength of the transferred expressions; see :func:`toongeo.build_rig`.
     method : {"cartoon", "caricature"}
         How the fitted face comes to its landmarks: by :func:`toongeo.align_face`, or in the deformation space of
-        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``.
+        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``. That
+        takes three to four times as long and looks no better; ask for it where you go on with its weights, as
+        ``rig="caricature"`` does.
     rig : {"transfer", "caricature"}
         Where the expressions come from: the template's, by deformation transfer, or the drawing's own, reconstructed
         from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
