@@ -37,6 +37,7 @@ CHOSEN_ON = {
     "eos": (*EXAMPLES, *PORTRAITS),  # the weight of the prior; in this comparison eos sets it
     "evidence": (*EXAMPLES, *CARICATURES, *PORTRAITS),  # the bound; the weights saw renders only
     "files": EXAMPLES,
+    "glasses": CHOOSING,
     "looks": CHOOSING,
     "landmarks": (*EXAMPLES, *PORTRAITS),
     "lips": (*EXAMPLES, *CARICATURES),
