@@ -38,6 +38,7 @@ CHOSEN_ON = {
     "evidence": (*EXAMPLES, *CARICATURES, *PORTRAITS),  # the bound; the weights saw renders only
     "files": EXAMPLES,
     "films": ("astronaut", "moustache_man"),  # where a frame needs more than one sample a pixel
+    "glasses": CHOOSING,
     "looks": CHOOSING,
     "landmarks": (*EXAMPLES, *PORTRAITS),
     "lips": (*EXAMPLES, *CARICATURES),

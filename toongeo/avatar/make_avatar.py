@@ -38,6 +38,7 @@ from toongeo.pipeline import (
     snap_eyes,
 )
 from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
+from toongeo.pipeline.align.fit_ears import fit_ears
 from toongeo.pipeline.align.size_teeth import size_teeth
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
@@ -205,7 +206,7 @@ def make_avatar(
     goal = given if cleaned.change else landmarks  # errors are told against the points that were given, or snapped
     face = align(fit, landmarks)
     face = dataclasses.replace(face, report=dataclasses.replace(face.report, noise=cleaned.change))
-    face = size_teeth(fit_cranium(face, parse), drawn_mouth(img, parse))
+    face = size_teeth(fit_ears(fit_cranium(face, parse), parse), drawn_mouth(img, parse))
     clock.start("rig")
     neutral_aligned, shapes, drawn_face = rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")
