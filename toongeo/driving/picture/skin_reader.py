@@ -12,7 +12,7 @@ import numpy as np
 from toongeo.arrays import Bytes, Floats
 from toongeo.driving.landmark_pose import LandmarkPose, landmark_pose
 from toongeo.driving.landmark_rig import PerformerFace
-from toongeo.driving.picture.eye_aperture import EyeAperture, eye_apertures
+from toongeo.driving.picture.eye_aperture import eye_apertures
 from toongeo.driving.picture.picture_pose import Steps, picture_error, picture_pose, slopes
 from toongeo.driving.picture.skin_samples import FACE_PX, Grey, shrunken, skin_samples
 from toongeo.geometry.one_thread import one_thread
@@ -77,18 +77,17 @@ class SkinReader:
     def read(self, grey: Grey, landmarks: Floats, *, least: float = 0.0, steps: Steps = (4, 3)) -> LandmarkPose:
         """The same from a frame as of :meth:`grey`.
 
-        How far the eyes are closed is told by what is seen between the lids, if the face of the samples is at rest
-        (``least`` is 0); by the skin only where eye and lid look alike.
+        How far the eyes are closed is told by what is seen between the lids; by the skin only where eye and lid look
+        alike, as where the eyes are closed in the frame of the samples.
         """
         small = self.smaller(landmarks)
         with one_thread():
             levels = slopes(grey)
             start = min(self._starts(small), key=lambda pose: picture_error(self.skin, levels, pose))
-            eyes = self._eyes if least == 0 else ()
-            start = _blinked(eyes, levels[-1], start)
-            held = [eye.blink for eye in eyes]
+            start = self._blinked(levels[-1], start)
+            held = [eye.blink for eye in self._eyes]
             pose = picture_pose(self.skin, levels, start, least=least, steps=steps, held=held)
-            self._pose = _blinked(eyes, levels[-1], pose)
+            self._pose = self._blinked(levels[-1], pose)
         self._landmarks = small
         return self._pose
 
@@ -113,10 +112,9 @@ class SkinReader:
             found,
         ]
 
-
-def _blinked(eyes: tuple[EyeAperture, ...], level: Grey, pose: LandmarkPose) -> LandmarkPose:
-    """The pose with the eyes as far closed as they look."""
-    weights = pose.weights.copy()
-    for eye in eyes:
-        weights[eye.blink] = eye.closed(level, pose)
-    return replace(pose, weights=weights)
+    def _blinked(self, level: Grey, pose: LandmarkPose) -> LandmarkPose:
+        """The pose with the eyes as far closed as they look."""
+        weights = pose.weights.copy()
+        for eye in self._eyes:
+            weights[eye.blink] = eye.closed(level, pose)
+        return replace(pose, weights=weights)

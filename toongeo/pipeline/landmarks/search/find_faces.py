@@ -24,8 +24,8 @@ _ROUGH_STAGES = 2  # of the cascade, before the verifier looks for the first tim
 _KEPT = 4  # boxes that the whole cascade is run on, at least
 _PLAIN = 0.5  # the sum of the first scores at which others are looked at too: there may be many faces
 # Chances of a face: the least one, and that beside a sure face. Chosen on renders and on photographs without a face.
-_FACE, _SURE, _BESIDE = 0.65, 0.9, 0.9
-_PLACED = 0.35  # mean confidence of inner points; of drawn renders, points with less were off the face
+_FACE, _SURE, _BESIDE = 0.7, 0.9, 0.9
+_PLACED = 0.6  # mean confidence of inner points; on strange renders hardly a face with less had its points within 8 %
 _PLACED_BESIDE = 0.6  # of that of the face whose points are surest
 _OVERLAP = 0.7  # radii between the middles of faces that cannot both be
 _SAME = 0.15  # radii between the points of what would end as one face
