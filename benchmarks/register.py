@@ -27,9 +27,10 @@ from scipy.spatial.transform import Rotation
 
 from toongeo import MorphableModel, default_model, nonrigid_register, rig_mesh
 from toongeo.geometry.rotations.similarity import similarity
+from toongeo.model.anatomy.hidden_vertices import hidden_vertices
 from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
-from toongeo.pipeline.rig.foreign.register_face import hidden, register_face
+from toongeo.pipeline.rig.foreign.register_face import register_face
 
 SCALE, TURN, SHIFT = 0.37, Rotation.from_euler("xyz", [20, -50, 130], degrees=True).as_matrix(), np.array([5.0, 6, 7])
 ICP_STEPS = 10
@@ -107,7 +108,7 @@ def registrations(template: MorphableModel, head: MorphableModel, with_amberg: b
     target, points = moved(head.mean), moved(head.mean[head.landmarks])
     scale, rotation, shift = similarity(template.mean[template.landmarks[INNER]], points[INNER])
     aligned = scale * template.mean[used] @ rotation.T + shift
-    fitted = ~hidden(template)
+    fitted = ~hidden_vertices(template)
     vertices = template.landmarks[INNER]
     ways = {
         "similarity of the landmarks": lambda: aligned,

@@ -21,11 +21,11 @@ from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 from toongeo.io.check_image import check_image
 from toongeo.io.check_landmarks import check_landmarks
 from toongeo.model.anatomy.landmark_basis import landmark_basis
+from toongeo.model.anatomy.rim_anchors import rim_anchors
 from toongeo.model.anatomy.visible_landmarks import landmarks_seen
 from toongeo.pipeline.align.align_face import align_face
 from toongeo.pipeline.align.denoise_landmarks import denoise_landmarks
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
-from toongeo.pipeline.align.rim_anchors import rim_anchors
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm

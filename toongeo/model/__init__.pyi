@@ -9,4 +9,9 @@ from toongeo.model.expression_weights import preset as preset
 from toongeo.model.eyeball_template import EyeballTemplate as EyeballTemplate
 from toongeo.model.loaders.load_eos import load_eos as load_eos
 from toongeo.model.loaders.load_ict_facekit import load_ict_facekit as load_ict_facekit
+from toongeo.model.loaders.load_model import FORMATS as FORMATS
+from toongeo.model.loaders.load_model import load_model as load_model
+from toongeo.model.loaders.load_model import model_format as model_format
+from toongeo.model.loaders.save_model import save_model as save_model
 from toongeo.model.morphable_model import MorphableModel as MorphableModel
+from toongeo.model.supply.skinning import Skinning as Skinning

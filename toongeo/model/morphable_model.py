@@ -1,25 +1,27 @@
 """A linear morphable face model."""
 
+from __future__ import annotations
+
 import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only, restored
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.parts import INNER_PARTS
+from toongeo.model.check_model import check_model
 from toongeo.model.eyeball_template import EyeballTemplate
 from toongeo.model.face_prior import FacePrior
-from toongeo.model.ibug68 import PARTS
-from toongeo.model.mirrored_vertices import mirrored_vertices
 from toongeo.model.regions import REGIONS
+from toongeo.model.supply.skinning import Skinning
+from toongeo.model.supply.stand_ins import has_part, stand_ins
 
-__all__ = ["MorphableModel"]
-
-_GREY = 0.6  # sRGB of a model without colours: of the lightness of skin, without its hue
+_OBJECTS = ("eyes", "skinning", "prior")  # look after their own arrays
 
 __all__ = ["MorphableModel"]
 
@@ -42,8 +44,8 @@ class MorphableModel:
     faces : (m, 3) int64, counter-clockwise from outside
     identity : (k, n, 3) float32
         One unit of a coefficient is one standard deviation.
-    landmarks : (68,) int64
-        Vertex of each iBUG-68 point, facing the camera.
+    landmarks : (68,) int64, or (0,)
+        Vertex of each iBUG-68 point, facing the camera. A model without is given them by :meth:`with_landmarks`.
     quads : (q, 4) int64
         The same surface in quads; none: the model is known by its triangles alone.
     expression : (e, n, 3) float32
@@ -64,13 +66,16 @@ class MorphableModel:
         None: longitude and latitude stand in (:func:`toongeo.model.atlas_coordinates`).
     uv_faces : (m, 3) int64
     eyes : left and right eyeball, or none
+    skinning : Skinning or None
+        Joints of the jaw and neck, in models that turn them: :meth:`posed`.
     prior : FacePrior or None
         None where the mean is the likeliest face and annotators see its landmarks where they are.
 
     Raises
     ------
     ValueError
-        If the mean of the prior has another length than there are identity modes, or a landmark is no vertex.
+        If the mean of the prior has another length than there are identity modes, an array has another shape than it
+        should, numbers that are not finite or indices out of range, or the sizes of two do not fit together.
     """
 
     mean: np.ndarray
@@ -89,6 +94,7 @@ class MorphableModel:
     uv: np.ndarray = field(default_factory=_nothing)
     uv_faces: np.ndarray = field(default_factory=_nothing)
     eyes: tuple[EyeballTemplate, ...] = ()
+    skinning: Skinning | None = None
     prior: FacePrior | None = None
 
     __repr__ = brief_repr
@@ -98,31 +104,10 @@ class MorphableModel:
         if self.prior is not None and self.prior.mean.shape != (len(self.identity),):
             expected = (len(self.identity),)
             raise ValueError(f"prior: expected a mean of shape {expected}, got {self.prior.mean.shape}")
-        if self.landmarks.size and not 0 <= self.landmarks.min() <= self.landmarks.max() < len(self.mean):
-            got = f"{self.landmarks.min()} to {self.landmarks.max()}"
-            raise ValueError(f"landmarks: expected vertices in 0..{len(self.mean) - 1}, got {got}")
-        for name, value in self._stand_ins().items():
+        check_model(self)
+        for name, value in stand_ins(self).items():
             object.__setattr__(self, name, value)
-        read_only(self, *(part.name for part in fields(self) if part.name not in ("eyes", "prior")))
-
-    def _stand_ins(self) -> dict[str, Any]:
-        """What takes the place of fields that were not given."""
-        n = len(self.mean)
-        empty: dict[str, np.ndarray] = {
-            "expression": np.zeros((0, n, 3), np.float32),
-            "albedo": np.zeros((0, n, 3), np.float32),
-            "quads": np.zeros((0, 4), np.int64),
-            "uv": np.zeros((0, 2)),
-            "uv_faces": np.zeros((0, 3), np.int64),
-        }
-        values: dict[str, Any] = {name: array for name, array in empty.items() if not getattr(self, name).size}
-        if not self.albedo_mean.size:
-            values["albedo_mean"] = np.full((n, 3), _GREY, np.float32)
-        if not self.contour_lines:
-            values["contour_lines"] = tuple(self.landmarks[k : k + 1] for k in PARTS["jaw"])
-        if not self.mirror.size:
-            values["mirror"] = mirrored_vertices(self.mean)
-        return values
+        read_only(self, *(part.name for part in fields(self) if part.name not in _OBJECTS))
 
     def has(self, *names: str) -> bool:
         """Whether the model has all of some parts.
@@ -130,8 +115,9 @@ class MorphableModel:
         Parameters
         ----------
         *names
-            Regions, named expressions, or what a model need not bring along: ``"quads"``, ``"uv"``, ``"uv_faces"``,
-            ``"eyes"``, ``"albedo"``, ``"expression"`` (at least one that is named).
+            Regions, named expressions, or what a model need not bring along: ``"landmarks"``, ``"quads"``,
+            ``"uv"``, ``"uv_faces"``, ``"eyes"``, ``"albedo"``, ``"contours"`` (along which jaw points slide),
+            ``"skinning"``, ``"expression"`` (at least one that is named).
 
         Examples
         --------
@@ -139,16 +125,7 @@ class MorphableModel:
         >>> default_model().has("eyes", "teeth_upper", "jawOpen"), default_model().has("beard")
         (True, False)
         """
-        return all(self._has(name) for name in names)
-
-    def _has(self, name: str) -> bool:
-        if name == "expression":
-            return self.n_named > 0
-        if name in ("quads", "uv", "uv_faces", "eyes", "albedo"):
-            return len(getattr(self, name)) > 0
-        return name in self.expression_names[: self.n_named] or (
-            name in self.regions and bool(self.regions[name].any())
-        )
+        return all(has_part(self, name) for name in names)
 
     def vertices(self, identity: np.ndarray | None = None, expression: np.ndarray | None = None) -> np.ndarray:
         """Vertices (n, 3), mm, for identity (k,) and expression (e,) coefficients; None is zero.
@@ -171,6 +148,32 @@ class MorphableModel:
             with one_thread():  # how BLAS splits a sum among threads would show in the last digits
                 V += (c.astype(np.float32) @ modes.reshape(len(modes), V.size)).reshape(-1, 3)
         return V
+
+    def posed(
+        self,
+        identity: np.ndarray | None = None,
+        expression: np.ndarray | None = None,
+        *,
+        pose: Mapping[str, ArrayLike],
+    ) -> np.ndarray:
+        """Vertices (n, 3), mm, with joints turned: ``pose={"jaw": (0.2, 0, 0)}``, rotation vectors in radians.
+
+        Raises
+        ------
+        ValueError
+            If the model has no such joint, or none at all.
+        """
+        if self.skinning is None:
+            raise ValueError("model: expected one with joints, got one whose expressions are all linear")
+        return self.skinning.posed(self.vertices(identity, expression), pose)
+
+    @property
+    def principal_modes(self) -> np.ndarray:
+        """Identity modes (c, n, 3), mm, of unit variance between people: random faces are drawn from them.
+
+        A mode that leads from a mean that they can make to one that they cannot is not among them.
+        """
+        return self.identity if self.prior is None else self.identity[: self.prior.n_principal]
 
     def region(self, name: str) -> np.ndarray:
         """Mask (n,) of a named region.
@@ -204,3 +207,71 @@ class MorphableModel:
         near = difflib.get_close_matches(name, self.expression_names, n=3, cutoff=0.4)
         hint = f"; did you mean {', '.join(near)}?" if near else ""
         raise ValueError(f"name: no expression {name!r}{hint}")
+
+    def sample(self, rng: np.random.Generator, *, sigma: float = 1.0) -> np.ndarray:
+        """Identity coefficients (k,) of a random person, ``sigma`` standard deviations about the likeliest face.
+
+        Examples
+        --------
+        >>> from toongeo.model import default_model
+        >>> model = default_model()
+        >>> model.vertices(model.sample(np.random.default_rng(0), sigma=0.8)).shape == model.mean.shape
+        True
+        """
+        middle = 0.0 if self.prior is None else self.prior.mean
+        return middle + sigma * rng.standard_normal(len(self.identity))
+
+    @classmethod
+    def from_arrays(cls, mean: ArrayLike, faces: ArrayLike, **parts: Any) -> MorphableModel:
+        """A model of plain arrays in any unit; all are checked, and brought into the house frame.
+
+        Parameters
+        ----------
+        mean : (n, 3) float
+            +Y up, +Z out of the face. The origin moves midway between the eyeballs if there are landmarks.
+        faces : (m, 3) int
+            0-based; turned about if they face into the head.
+        **parts
+            Fields of this class; and ``unit``: millimetres a unit of ``mean``, ``identity`` and ``expression``, or
+            ``"auto"`` for the power of ten that makes a head of human size; ``origin`` (3,), in the file's unit.
+
+        Raises
+        ------
+        ValueError
+            If shapes do not fit, numbers are not finite, or indices are out of range; names the array.
+
+        Examples
+        --------
+        >>> from toongeo.model import default_model
+        >>> metres = default_model().mean / 1000
+        >>> model = MorphableModel.from_arrays(metres, default_model().faces, unit="auto")
+        >>> model.has("landmarks"), model.identity.shape[0], round(float(np.ptp(model.mean[:, 0])) / 100)
+        (False, 0, 2)
+        """
+        from toongeo.model.supply.from_arrays import from_arrays
+
+        return from_arrays(mean, faces, **parts)
+
+    def with_landmarks(self, vertices: ArrayLike) -> MorphableModel:
+        """The same model with these vertices (68,) as landmarks; its origin moves midway between the eyes."""
+        from toongeo.model.supply.with_landmarks import with_landmarks
+
+        return with_landmarks(self, vertices)
+
+    def with_contours(self) -> MorphableModel:
+        """The same model with contour lines, so that jaw points slide along its outline; see `outline_paths`."""
+        from toongeo.model.supply.outline_paths import with_contours
+
+        return with_contours(self)
+
+    def with_uv(self) -> MorphableModel:
+        """The same model with texture coordinates; see `flattened`."""
+        from toongeo.model.supply.flattened import with_uv
+
+        return with_uv(self)
+
+    def with_rig_of(self, template: MorphableModel | None = None) -> MorphableModel:
+        """The people of this model on the surface of a template, with all that it has; see `on_template`."""
+        from toongeo.model.supply.on_template import on_template
+
+        return on_template(self, template)

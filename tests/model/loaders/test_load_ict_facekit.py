@@ -60,7 +60,7 @@ def test_its_own_face_is_recognised(ict):
 
 def test_another_archive_is_refused(tmp_path):
     np.savez(tmp_path / "other.npz", neutral=np.zeros((5, 3)))
-    with pytest.raises(ValueError, match=r"path: expected the arrays of ICT-FaceKit.*landmarks68"):
+    with pytest.raises(ValueError, match="expected the arrays .*, without .*landmarks68"):
         load_ict_facekit(tmp_path / "other.npz")
 
 
@@ -68,5 +68,5 @@ def test_another_topology_is_refused(path, tmp_path):
     with np.load(path) as z:
         arrays = {name: z[name] for name in z.files}
     np.savez(tmp_path / "cut.npz", **{**arrays, "neutral": arrays["neutral"][:100]})
-    with pytest.raises(ValueError, match="path: expected at least 23021|path: expected at least 24591"):
+    with pytest.raises(ValueError, match="quads: expected|identity_q: expected"):
         load_ict_facekit(tmp_path / "cut.npz")

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from tests.conftest import CARTOONS
+from toongeo.model.anatomy.straighten_teeth import PARTS
 from toongeo.pipeline import align_face
 from toongeo.pipeline.align.keep_teeth_inside import STEP, STEPS, enclosed, keep_teeth_inside
-from toongeo.pipeline.align.straighten_teeth import PARTS
 
 
 @pytest.fixture(scope="module")

@@ -2,30 +2,38 @@
 
 from __future__ import annotations
 
+import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.model.ibug68 import PARTS
-from toongeo.model.loaders.foreign_model import named_parts
+from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.model.supply.outline_paths import outline_landmarks, outline_paths
+from toongeo.reading.check_file import file_bytes
 
 __all__ = ["load_eos"]
 
 _VERSION = 1
-_EYE_DEPTH_MM = 13.0  # from the corners of an eye back to its centre
 _INNER_MOUTH_CORNERS = {60: 48, 64: 54}  # the published table leaves them out: the outer corners take their place
 
 
-def load_eos(shape: str | Path, landmarks: str | Path, expression: str | Path | None = None) -> MorphableModel:
+def load_eos(
+    shape: str | Path,
+    landmarks: str | Path,
+    expression: str | Path | None = None,
+    contours: str | Path | None = None,
+) -> MorphableModel:
     """A shape model of eos with its table of landmarks and, if given, its expression blendshapes.
 
     The origin moves midway between the eyes, 13 mm behind the middle of their corners, because these models have
     no eyeballs. Units (mm) and axes are ours already. A unit of an identity mode is one standard deviation, the
     blendshapes range in [0, 1]. Jaw points that the table does not have get vertices on
-    the outline of the mean as seen from in front; they do not slide.
+    the outline of the mean as seen from in front; from there they slide along paths over its sides.
 
     Parameters
     ----------
@@ -35,6 +43,9 @@ def load_eos(shape: str | Path, landmarks: str | Path, expression: str | Path | 
         ``ibug_to_sfm.txt``: lines ``number = vertex`` under ``[landmark_mappings]``, numbers from 1.
     expression : str or Path, optional
         ``expression_blendshapes_3448.bin``.
+    contours : str or Path, optional
+        ``sfm_model_contours.json``: vertices of the right and the left outline, on which eos looks for the nearest.
+        They are regions here, ``contour_right`` and ``contour_left``.
 
     Raises
     ------
@@ -45,31 +56,42 @@ def load_eos(shape: str | Path, landmarks: str | Path, expression: str | Path | 
     ----------
     P. Huber et al., "A multiresolution 3D morphable face model and fitting framework", VISAPP 2016.
     """
-    mean, modes, faces, uv = _shape_model(_Reader(Path(shape)))
-    table = _landmark_table(Path(landmarks), len(mean))
-    blendshapes = _blendshapes(_Reader(Path(expression)), len(mean)) if expression is not None else {}
-    corners = mean[[table[k] for k in (36, 39, 42, 45)]]
-    mean = mean - (corners.mean(axis=0) - [0.0, 0.0, _EYE_DEPTH_MM])
-    points = _jaw(mean, table)
-    return MorphableModel(
-        mean=mean,
-        faces=faces,
-        identity=modes,
-        expression=np.array(list(blendshapes.values()), np.float32).reshape(-1, len(mean), 3),
-        expression_names=tuple(blendshapes),
-        n_named=len(blendshapes),
-        landmarks=points,
-        regions=named_parts(mean, points),
-        uv=uv,
-        uv_faces=faces,
-    )
+    with refusing(Path(shape), "a shape model of eos"):
+        mean, modes, faces, uv = _shape_model(_Reader(Path(shape)))
+    with refusing(Path(landmarks), "a table of landmarks of eos"):
+        table = _landmark_table(Path(landmarks), len(mean))
+    blendshapes: dict[str, NDArray[np.float32]] = {}
+    if expression is not None:
+        with refusing(Path(expression), "blendshapes of eos"):
+            blendshapes = _blendshapes(_Reader(Path(expression)), len(mean))
+    regions = {}
+    if contours is not None:
+        with refusing(Path(contours), "contours of eos"):
+            regions = _contours(Path(contours), len(mean))
+    with refusing(Path(shape), "a shape model of eos"):
+        points = np.zeros(68, np.int64)
+        points[list(table)] = list(table.values())
+        uv_parts = {"uv": uv, "uv_faces": faces} if len(uv) else {}
+        model = MorphableModel.from_arrays(
+            mean,
+            faces,
+            identity=modes,
+            expression=np.array(list(blendshapes.values()), np.float32).reshape(-1, len(mean), 3),
+            expression_names=list(blendshapes),
+            landmarks=points,
+            regions=regions,
+            **uv_parts,
+        )
+        missing = [k for k in PARTS["jaw"] if k not in table]
+        points[missing] = outline_landmarks(model, points)[missing]
+        return replace(model, landmarks=points, contour_lines=outline_paths(model, points))
 
 
 class _Reader:
     """Little-endian numbers, one after the other."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self.data, self.offset = path, path.read_bytes(), 0
+        self.path, self.data, self.offset = path, file_bytes(path, argument="shape"), 0
 
     def take(self, dtype: str, count: int) -> NDArray:
         size = count * np.dtype(dtype).itemsize
@@ -102,6 +124,8 @@ def _shape_model(
     if version != _VERSION:
         raise ValueError(f"{reader.path}: expected version {_VERSION} of an eos model, got {version}")
     mean, basis, eigenvalues, faces = reader.pca()
+    if mean.size % 3 or basis.shape != (mean.size, eigenvalues.size) or not (eigenvalues >= 0).all():
+        raise ValueError(f"{reader.path}: expected a basis (3 n, k) with k eigenvalues, got {basis.shape}")
     reader.pca()  # the colour, empty in a shape model
     uv = reader.take("<f8", 2 * reader.number("<u8")).reshape(-1, 2)
     modes = (basis * np.sqrt(eigenvalues.ravel())).T.reshape(eigenvalues.size, -1, 3)
@@ -117,6 +141,8 @@ def _blendshapes(reader: _Reader, n: int) -> dict[str, NDArray[np.float32]]:
     shapes = {}
     for _ in range(reader.number("<u8")):
         name = reader.take("u1", reader.number("<u8")).tobytes().decode()
+        if name in shapes:
+            raise ValueError(f"expression: expected each name once, got {name!r} again")
         shapes[name] = reader.matrix()
         if shapes[name].size != 3 * n:
             raise ValueError(f"expression: expected {n} vertices like the shape, got {shapes[name].size // 3}")
@@ -137,20 +163,13 @@ def _landmark_table(path: Path, n: int) -> dict[int, int]:
     return table
 
 
-def _jaw(mean: NDArray[np.float64], table: dict[int, int]) -> NDArray[np.int64]:
-    """The 68 vertices; jaw points on an arc from the height of the eyes round the chin.
-
-    The arc is the outline of the mean as the camera in front sees it: in 17 directions from the bridge of the nose,
-    at equal angles from eye to chin, the vertex that is farthest away in the picture.
-    """
-    missing = np.array([k for k in PARTS["jaw"] if k not in table])
-    centre = mean[[table[k] for k in range(27, 31)]].mean(axis=0)
-    away = (mean - centre)[:, :2]
-    angle, radius = np.arctan2(away[:, 1], away[:, 0]), np.hypot(*away.T)
-    points = np.zeros(68, np.int64)
-    points[list(table)] = list(table.values())
-    for k in missing:
-        direction = -np.pi + k * np.pi / 16  # point 0 on the subject's right, 8 straight below
-        near = np.abs((angle - direction + np.pi) % (2 * np.pi) - np.pi) < np.radians(4)
-        points[k] = np.flatnonzero(near)[np.argmax(radius[near])]
-    return points
+def _contours(path: Path, n: int) -> dict[str, NDArray[np.bool_]]:
+    """Masks (n,) of the outlines."""
+    found = json.loads(path.read_text(encoding="utf-8"))["model_contour"]
+    regions = {}
+    for side in ("right", "left"):
+        vertices = np.array(found[f"{side}_contour"], np.int64)
+        if vertices.ndim != 1 or not len(vertices) or not 0 <= vertices.min() <= vertices.max() < n:
+            raise ValueError(f"contours: expected vertices below {n} in {path}")
+        regions[f"contour_{side}"] = np.bincount(vertices, minlength=n) > 0
+    return regions

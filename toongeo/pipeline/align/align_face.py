@@ -14,6 +14,8 @@ from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only, restored
 from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.model import MorphableModel
+from toongeo.model.anatomy.rim_anchors import rim_anchors
+from toongeo.model.anatomy.straighten_teeth import straighten_teeth
 from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.pipeline.align.bounded_nose import bounded_nose
 from toongeo.pipeline.align.carry_inner_parts import carry_inner_parts
@@ -21,8 +23,6 @@ from toongeo.pipeline.align.denoise_landmarks import LandmarkNoise, Noise, denoi
 from toongeo.pipeline.align.keep_ears_rigid import keep_ears_rigid
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
-from toongeo.pipeline.align.rim_anchors import rim_anchors
-from toongeo.pipeline.align.straighten_teeth import straighten_teeth
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.align.unfolded_start import unfolded_start
 from toongeo.pipeline.fit.face_fit import FaceFit

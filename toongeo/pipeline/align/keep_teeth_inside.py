@@ -9,7 +9,7 @@ import igl
 import numpy as np
 
 from toongeo.model import MorphableModel
-from toongeo.pipeline.align.straighten_teeth import PARTS
+from toongeo.model.anatomy.straighten_teeth import PARTS
 
 __all__ = ["STEP", "STEPS", "enclosed", "keep_teeth_inside"]
 

@@ -13,6 +13,7 @@ from toongeo.pipeline.landmarks.search.cascade import Cascade, CascadeStage, Par
 from toongeo.pipeline.landmarks.search.face_boxes import BoxTemplates
 from toongeo.pipeline.landmarks.search.face_judge import FaceJudge
 from toongeo.pipeline.landmarks.search.face_verifier import FaceVerifier
+from toongeo.reading.read_npz import read_npz
 
 __all__ = ["DetectorParts", "detector_arrays", "packed_axes", "read_detector", "shipped_detector", "unpacked_axes"]
 
@@ -92,9 +93,8 @@ def unpacked_axes(packed: NDArray[np.int8], units: NDArray[np.int8]) -> NDArray[
 
 def read_detector(path: Path) -> DetectorParts:
     """The detector of a file that :func:`detector_arrays` describes."""
-    with np.load(path, allow_pickle=False) as archive:
-        z = {name: archive[name] for name in archive.files}
-    single = {name: a.astype(np.float32) if a.dtype == np.float16 else a for name, a in z.items()}
+    z = read_npz(path, expected="a landmark detector")
+    single: dict[str, Any] = {name: a.astype(np.float32) if a.dtype == np.float16 else a for name, a in z.items()}
     parts, photo_parts = (
         tuple(
             PartCascade(z[f"{prefix}{k}_rows"], z[f"{prefix}{k}_shape"], _stages(single, f"{prefix}{k}_stage"))

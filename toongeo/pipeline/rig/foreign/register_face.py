@@ -6,33 +6,22 @@ Constants were judged on ICT-FaceKit's head and the template (``benchmarks/regis
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from toongeo._read_only import read_only, restored
 from toongeo.geometry.nonrigid_register import RegisteredMesh, nonrigid_register
 from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model import MorphableModel
-from toongeo.model.anatomy.rims import opening_rim
+from toongeo.model.anatomy.hidden_vertices import hidden_vertices
+from toongeo.model.anatomy.rim_anchors import rim_anchors
+from toongeo.model.anatomy.straighten_teeth import PARTS, straighten_teeth
 from toongeo.model.ibug68 import INNER
 from toongeo.pipeline.align.align_face import AlignedFace, AlignReport
-from toongeo.pipeline.align.rim_anchors import rim_anchors
-from toongeo.pipeline.align.straighten_teeth import PARTS, straighten_teeth
 from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.render import ScaledOrthographicCamera
 
-__all__ = ["RegisteredFace", "hidden", "register_face"]
+__all__ = ["RegisteredFace", "register_face"]
 
 _RIM_WEIGHT = 0.05  # of a landmark's: what lies between two of them on a rim is interpolated
-# Parts of the template that a head may lack or have in another form, and how far behind their rims (mm) they begin: the
-# inner sides of lids and lips are looked for on the head.
-_HIDDEN = {
-    "socket_left": 3.0,
-    "socket_right": 3.0,
-    "mouth_cavity": 8.0,
-    "teeth_upper": 0,
-    "teeth_lower": 0,
-    "tongue": 0,
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +90,7 @@ def register_face(V: np.ndarray, F: np.ndarray, points: np.ndarray, model: Morph
         F,
         np.r_[model.landmarks[inner], rim],
         np.vstack([points[inner], rim_points]),
-        fitted=~hidden(model),
+        fitted=~hidden_vertices(model),
         landmark_weight=np.r_[np.ones(inner.sum()), np.full(len(rim), _RIM_WEIGHT)],
     )
     vertices = (registration.vertices - shift) @ rotation / scale
@@ -118,14 +107,3 @@ def register_face(V: np.ndarray, F: np.ndarray, points: np.ndarray, model: Morph
     )
     face = AlignedFace(vertices, camera, model.landmarks, model, fit, AlignReport())
     return RegisteredFace(face, registration, scale, rotation, shift)
-
-
-def hidden(model: MorphableModel) -> np.ndarray:
-    """Mask (n,) of the parts of a model that lie behind lids and lips."""
-    mask = np.zeros(len(model.mean), bool)
-    for name, depth in _HIDDEN.items():
-        if name in model.regions:
-            inside = np.flatnonzero(model.regions[name])
-            rim = model.mean[opening_rim(model, name)]
-            mask[inside] = cKDTree(rim).query(model.mean[inside])[0] > depth if len(rim) else True
-    return mask

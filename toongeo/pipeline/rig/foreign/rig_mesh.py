@@ -10,17 +10,18 @@ from numpy.typing import ArrayLike
 
 from toongeo.geometry import DeformationTransfer, MeshLike, validate_mesh
 from toongeo.geometry.border_twins import border_twins
+from toongeo.geometry.carry_shapes import carry_shapes
 from toongeo.geometry.landmark_matrix import landmark_matrix
 from toongeo.geometry.rotations.similarity import similarity
 from toongeo.model import MorphableModel, default_model
+from toongeo.model.anatomy.hidden_vertices import hidden_vertices
+from toongeo.model.anatomy.straighten_teeth import PARTS
 from toongeo.model.ibug68 import INNER, MIRROR
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.align.straighten_teeth import PARTS
-from toongeo.pipeline.rig.foreign.carry_shapes import carry_shapes
 from toongeo.pipeline.rig.foreign.check_winding import check_winding
 from toongeo.pipeline.rig.foreign.close_gaps import close_gaps
 from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
-from toongeo.pipeline.rig.foreign.register_face import hidden, register_face
+from toongeo.pipeline.rig.foreign.register_face import register_face
 from toongeo.pipeline.rig.rig import Rig, RigReport
 from toongeo.pipeline.rig.split_gaze import split_gaze
 
@@ -109,7 +110,7 @@ def rig_mesh(
     # Vertices in no triangle have no surface around them, and stay.
     local = np.searchsorted(used, faces)
     head = register_face(vertices[used], local, points, model)
-    skin = ~hidden(model)
+    skin = ~hidden_vertices(model)
     face = model.region("face") & skin
     matched = float(head.registration.matched[face].mean())
     if matched < _LEAST_MATCHED:

@@ -1,0 +1,1 @@
+"""Model files as plain arrays; what is in them is not trusted."""

@@ -1,0 +1,1 @@
+"""What a model from elsewhere lacks, made for it."""
