@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from toongeo.app.commands.number_types import sigma
-from toongeo.app.commands.picture_arguments import add_landmarks, add_model
+from toongeo.app.commands.picture_arguments import add_landmarks, add_model, add_style
 
 __all__ = ["add_make"]
 
@@ -41,6 +41,7 @@ def _add_making(make: argparse.ArgumentParser) -> None:
     hair = make.add_mutually_exclusive_group()
     hair.add_argument("--hair-mask", type=Path, metavar="FILE", help="picture of IMAGE's size, white where hair is")
     hair.add_argument("--no-hair", action="store_true", help="build no hair; it stays painted on the head")
+    add_style(make, default=None)
     make.add_argument("--texture-size", type=int, default=1024, metavar="N", help="side of the atlas (default 1024)")
 
 
@@ -74,6 +75,7 @@ def _make(options: argparse.Namespace) -> None:
         rig=options.rig,
         hair=not options.no_hair,
         hair_mask=options.hair_mask,
+        style=options.style,
         texture_size=options.texture_size,
         format=options.format,
         saving=_saving(options),

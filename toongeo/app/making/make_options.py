@@ -22,7 +22,7 @@ class MakeOptions:
 
     Attributes
     ----------
-    model, noise, snap, photometric, method, rig, hair, hair_mask, texture_size
+    model, noise, snap, photometric, method, rig, hair, hair_mask, style, texture_size
         Of :func:`toongeo.make_avatar`; the mask is a file.
     format : str, optional
     saving : Mapping
@@ -39,6 +39,7 @@ class MakeOptions:
     rig: Literal["transfer", "caricature"] = "transfer"
     hair: bool = True
     hair_mask: Path | None = None
+    style: str | None = None
     texture_size: int = 1024
     format: str | None = None
     saving: Mapping[str, Any] = field(default_factory=dict)
@@ -62,5 +63,5 @@ class MakeOptions:
 
     def making(self) -> dict[str, Any]:
         """Arguments of :func:`toongeo.make_avatar`."""
-        names = ("model", "noise", "snap", "photometric", "method", "rig", "hair", "hair_mask", "texture_size")
+        names = ("model", "noise", "snap", "photometric", "method", "rig", "hair", "hair_mask", "style", "texture_size")
         return {name: getattr(self, name) for name in names}

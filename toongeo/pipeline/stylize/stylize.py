@@ -26,7 +26,7 @@ from toongeo.pipeline.stylize.velocity_warp import VelocityWarp, velocity_warp
 from toongeo.pipeline.texture import find_irises
 from toongeo.protocols import Stylized
 
-__all__ = ["check_style", "stylize"]
+__all__ = ["check_strength", "check_style", "stylize"]
 
 _LARGEST = 2_000_000  # pixels that are drawn; larger pictures are drawn at this size and enlarged
 _STRONGEST = 2.0
@@ -95,8 +95,7 @@ def stylize(
     """
     check_image(img)
     look = check_style(style)
-    if not (isinstance(strength, numbers.Real) and 0 <= strength <= _STRONGEST):
-        raise ValueError(f"strength: expected a number in [0, {_STRONGEST:g}], got {strength!r}")
+    check_strength(strength)
     points = ibug_landmarks(given_or_found(img, landmarks, scheme), scheme)
     fit = fit_3dmm(img, points)
     points = completed_landmarks(points, fit)
@@ -112,6 +111,18 @@ def stylize(
         _drawn(subject, variant, backdrop, strength, img.shape) for variant in (look, look.for_texture())
     )
     return Stylized(drawing, warp.points(points), warp, texture)
+
+
+def check_strength(strength: object) -> None:
+    """Refuse what is no strength.
+
+    Raises
+    ------
+    ValueError
+        If it is not a number in [0, 2].
+    """
+    if not (isinstance(strength, numbers.Real) and 0 <= float(strength) <= _STRONGEST):
+        raise ValueError(f"strength: expected a number in [0, {_STRONGEST:g}], got {strength!r}")
 
 
 def check_style(style: object) -> Style:
