@@ -11,9 +11,7 @@ __all__ = ["add_stylize"]
 
 def add_stylize(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     """Add ``stylize`` to the commands of ``toongeo``."""
-    command = commands.add_parser(
-        "stylize", help="draw the face of a photograph, as a toon, in ink ..."
-    )
+    command = commands.add_parser("stylize", help="draw the face of a photograph, as a toon, in ink ...")
     command.add_argument("image", type=Path, metavar="IMAGE")
     command.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=".png, .jpg, .webp")
     add_style(command, default="toon")
