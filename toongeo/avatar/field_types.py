@@ -31,7 +31,8 @@ def check_field_types(instance: Any) -> None:
         ...
     ValueError: RigReport.seconds: expected float, got str
     """
-    hints = _hints(type(instance))
+    kind: Any = type(instance)
+    hints = _hints(kind)
     for field in fields(instance):
         value, hint = getattr(instance, field.name), hints.get(field.name, Any)
         if not _fits(value, hint):

@@ -82,7 +82,7 @@ def match_style(
         weight = blurred(mask.astype(np.float32), _SOFT * float(np.hypot(*lab.shape[:2])))
         result += weight[..., None] * matched
         total += weight
-    return np.rint(rgb_of(result / np.maximum(total, np.float32(1e-6))[..., None])).astype(np.uint8)
+    return np.rint(rgb_of(np.asarray(result / np.maximum(total, 1e-6)[..., None], np.float32))).astype(np.uint8)
 
 
 def _parts(img: Bytes, landmarks: ArrayLike | None) -> np.ndarray:
