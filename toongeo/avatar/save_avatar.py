@@ -46,6 +46,8 @@ _Animation = Literal["demo"] | None | tuple[Any, Any] | tuple[Any, Any, Any]
 _EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
 _COARSE_MM = 0.04  # the same for a quantized file: a fifth of a pixel where a head is a thousand high
 _COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
+# Fields that are not in the state: the picture and a mesh of the file, and the drawing, which is not kept.
+_ELSEWHERE = ("texture", "hair", "style")
 
 
 def save_avatar(path: Path, avatar: AvatarStages, kind: str | None, options: Mapping[str, Any]) -> None:
@@ -146,7 +148,7 @@ def avatar_attachment(avatar: AvatarStages, *, coarse: bool) -> bytes:
         steps = np.float32(_COARSE_STEPS)
         parse = replace(parse, confidence=np.rint(parse.confidence * steps) / steps)
     # The camera's picture is known to the reader as the file's image, the rig's arrays as its meshes.
-    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name not in ("texture", "hair")}
+    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name not in _ELSEWHERE}
     state["parse"] = parse
     if avatar.hair is not None:
         # The mesh of the file has a point for each pair of these.

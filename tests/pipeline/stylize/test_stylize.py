@@ -153,7 +153,7 @@ def test_what_is_refused(face):
         tg.stylize(img, points[:50])
 
 
-def test_an_avatar_of_a_drawing(cartoon):
+def test_an_avatar_of_a_drawing(cartoon, tmp_path):
     img, points = cartoon("astronaut")
     avatar = tg.make_avatar(img, points, style="toon", hair=False, texture_size=256)
     assert avatar.style is not None
@@ -161,6 +161,10 @@ def test_an_avatar_of_a_drawing(cartoon):
     goal = avatar.style.landmarks[36:48]
     placed = avatar.face.project(avatar.face.vertices[avatar.face.landmark_vertices[36:48]])
     assert np.abs(placed - goal).max() < 0.05 * np.ptp(points[:, 0])
+    avatar.save(tmp_path / "toon.glb")
+    again = tg.load_avatar(tmp_path / "toon.glb")
+    np.testing.assert_array_equal(again.face.vertices, avatar.face.vertices)
+    assert again.style is None  # the drawing is not kept
 
 
 def test_whoever_draws_otherwise_is_asked_once(cartoon):
