@@ -91,6 +91,7 @@ from toongeo.pipeline import held_out_errors as held_out_errors
 from toongeo.pipeline import ibug_landmarks as ibug_landmarks
 from toongeo.pipeline import keep_lids_outside as keep_lids_outside
 from toongeo.pipeline import make_room as make_room
+from toongeo.pipeline import match_style as match_style
 from toongeo.pipeline import neutral_face as neutral_face
 from toongeo.pipeline import parse_face as parse_face
 from toongeo.pipeline import photometric_fit as photometric_fit

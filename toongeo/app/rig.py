@@ -77,5 +77,7 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     report = found.report
     print(f"{len(found.names)} expressions on {len(vertices)} vertices in {report.seconds:.1f} s")
     print(f"{report.matched:.1%} of the template's face found a partner, mean distance {report.distance:.3g}")
+    if report.mouth_opens is False:
+        print("warning: the mouth does not open: upper and lower lip are one surface, which expressions stretch")
     print(f"wrote {output}")
     return found

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from toongeo.avatar.field_types import check_field_types
 from toongeo.avatar.report import AvatarReport
 from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
@@ -45,7 +46,7 @@ _CLASSES: dict[str, Any] = {
     )
 }
 # Fields that came later are left out where they are None: a file without them is as it was before.
-_LATER = ("hair", "noise")
+_LATER = ("hair", "noise", "mouth_opens")
 _VERSION = 1
 _MOST_BYTES = 1 << 30  # that a file may ask for
 
@@ -168,7 +169,9 @@ class _Reader:
             return simple[kind][content]
         if kind == "model":
             return self.model
-        return _CLASSES[kind](**{name: self.value(part) for name, part in content.items()})
+        instance = _CLASSES[kind](**{name: self.value(part) for name, part in content.items()})
+        check_field_types(instance)
+        return instance
 
 
 def _packed(array: np.ndarray) -> bytes:

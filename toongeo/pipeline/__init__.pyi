@@ -54,6 +54,7 @@ from toongeo.pipeline.rig import neutral_face as neutral_face
 from toongeo.pipeline.rig import rig_mesh as rig_mesh
 from toongeo.pipeline.stylize import STYLES as STYLES
 from toongeo.pipeline.stylize import Style as Style
+from toongeo.pipeline.stylize import match_style as match_style
 from toongeo.pipeline.stylize import stylize as stylize
 from toongeo.pipeline.texture import Iris as Iris
 from toongeo.pipeline.texture import aim_eyes as aim_eyes

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from toongeo.app.commands.number_types import sigma
-from toongeo.app.commands.picture_arguments import add_landmarks, add_model
+from toongeo.app.commands.picture_arguments import add_landmarks, add_model, add_style
 
 __all__ = ["add_make"]
 
@@ -34,8 +34,6 @@ def _add_making(make: argparse.ArgumentParser) -> None:
     make.add_argument("--method", choices=("cartoon", "caricature"), default="cartoon", help=methods)
     rigs = "whose expressions it has: the template's, transferred (default), or its own, from exaggerated landmarks"
     make.add_argument("--rig", choices=("transfer", "caricature"), default="transfer", help=rigs)
-    styles = "draw the picture first"
-    make.add_argument("--style", choices=("toon", "chibi", "caricature", "ink", "painted"), help=styles)
     noise = "of the landmarks, in outer-eye distances; 0: exact (default auto: smoothed where they are plainly noisy)"
     make.add_argument("--noise", type=sigma, default="auto", metavar="SIGMA", help=noise)
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
@@ -43,6 +41,7 @@ def _add_making(make: argparse.ArgumentParser) -> None:
     hair = make.add_mutually_exclusive_group()
     hair.add_argument("--hair-mask", type=Path, metavar="FILE", help="picture of IMAGE's size, white where hair is")
     hair.add_argument("--no-hair", action="store_true", help="build no hair; it stays painted on the head")
+    add_style(make, default=None)
     make.add_argument("--texture-size", type=int, default=1024, metavar="N", help="side of the atlas (default 1024)")
 
 
@@ -73,9 +72,9 @@ def _make(options: argparse.Namespace) -> None:
         photometric=options.photometric,
         method=options.method,
         rig=options.rig,
-        style=options.style,
         hair=not options.no_hair,
         hair_mask=options.hair_mask,
+        style=options.style,
         texture_size=options.texture_size,
         format=options.format,
         saving=_saving(options),

@@ -24,6 +24,7 @@ from toongeo.pipeline.align.denoise_landmarks import LandmarkNoise, Noise, denoi
 from toongeo.pipeline.align.keep_ears_rigid import keep_ears_rigid
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
+from toongeo.pipeline.align.noise.curve_points import with_curve_points
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.align.unfolded_start import unfolded_start
 from toongeo.pipeline.fit.face_fit import FaceFit
@@ -129,7 +130,7 @@ def align_face(
     ----------
     fit : FaceFit
     landmarks : (68, 2) float, px
-        NaN rows are missing and anchor nothing.
+        NaN rows are missing. One on the jaw, a brow or the nose whose neighbours are there is filled in from these.
     weight : float
         Lambda of Eq. 10. The default holds the anchors to about a hundredth of a pixel.
     laplacian : {"uniform", "cotangent"}
@@ -171,6 +172,7 @@ def align_face(
     V, at = fit.vertices, fit.landmark_vertices
     if flow:
         V, at = symmetric_flow(fit.model, fit.camera, V, at, landmarks, depth, slide)
+        landmarks = with_curve_points(landmarks, fit.camera.project(V[at]))
     elif slide:
         at = visible_contour(fit.model, fit.camera, _anchored(fit, V, at, landmarks, weight, laplacian), at)
     aligned = _anchored(fit, V, at, landmarks, weight, laplacian)

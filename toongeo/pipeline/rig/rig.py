@@ -34,6 +34,8 @@ class RigReport:
     matched, partnered, distance : float
         Of a head that was modelled elsewhere: shares of the template's face and of its own vertices that found a
         partner on the other, and the mean distance of those, in the head's unit.
+    mouth_opens : bool
+        Of such a head: False if its lips are one surface, which can only be stretched.
     """
 
     seconds: float = 0.0
@@ -43,6 +45,7 @@ class RigReport:
     matched: float | None = None
     partnered: float | None = None
     distance: float | None = None
+    mouth_opens: bool | None = None
 
 
 @dataclass(frozen=True, eq=False)
