@@ -15,9 +15,9 @@ from toongeo.avatar.field_types import check_field_types
 from toongeo.avatar.report import AvatarReport
 from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
-from toongeo.model.model_checksum import model_checksum
 from toongeo.pipeline import AlignedFace, AlignReport, Eyes, FaceFit, LandmarkNoise, Rig, RigReport
 from toongeo.pipeline.fit.face_fit import FitReport, PhotometricReport
+from toongeo.pipeline.fit.model_checksum import model_checksum
 from toongeo.protocols import FaceParse, HairMask
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 

@@ -25,6 +25,7 @@ def no_work(monkeypatch, tmp_path):
             ["-o", "a.glb", "--author", "Ada"],
             "--author: no option of .glb, which has --crop, --quantize, --texture, --names",
         ),
+        (["-o", "a.obj", "--no-unlit"], "--unlit: no option of .obj, which has --crop"),
         (["-o", "a.glb", "--texture-size", "0"], "--texture-size: expected an integer"),
         (["-o", "a.glb", "--noise", "-1"], "--noise: expected 'auto' or a number >= 0"),
         (["-o", "a.glb", "--hair-mask", OTHER], "--hair-mask: expected the picture's size"),

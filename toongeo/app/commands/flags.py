@@ -23,7 +23,8 @@ def know_flags(parser: argparse.ArgumentParser) -> None:
             for command in action.choices.values():
                 know_flags(command)
         elif action.option_strings:
-            flags[action.dest] = action.option_strings[-1], action.default
+            long = [flag for flag in action.option_strings if flag.startswith("--")]
+            flags[action.dest] = (long or action.option_strings)[0], action.default
         elif action.metavar:
             flags[action.dest] = str(action.metavar), None
     parser.set_defaults(flags=flags)

@@ -53,6 +53,8 @@ def _add_saving(make: argparse.ArgumentParser) -> None:
         "--names", choices=("toongeo", "arkit", "talkinghead"), help="of the expressions in the file (default toongeo)"
     )
     make.add_argument("--texture", choices=("png", "jpeg", "none"), help="picture in a .glb or .vrm (default png)")
+    unlit = "colours as they are drawn, without light, in a .glb or .vrm (default: of drawings)"
+    make.add_argument("--unlit", action=argparse.BooleanOptionalAction, help=unlit)
     make.add_argument("--author", action="append", metavar="NAME", help="for the licence of a .vrm; may be repeated")
 
 
@@ -105,6 +107,8 @@ def _saving(options: argparse.Namespace) -> dict[str, Any]:
         saving["names"] = options.names
     if options.texture:
         saving["texture"] = None if options.texture == "none" else options.texture
+    if options.unlit is not None:
+        saving["unlit"] = options.unlit
     if options.author:
         from toongeo.io import VrmMeta
 

@@ -14,10 +14,10 @@ from toongeo._brief_repr import brief_repr
 from toongeo._notebook_png import notebook_png
 from toongeo._read_only import read_only, restored
 from toongeo.model.default_model import default_model
-from toongeo.model.model_checksum import model_checksum
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.fit_dict import camera_dict, checked_model, plain, read_camera, read_report, report_dict
 from toongeo.pipeline.fit.fit_file import read_fields, write_fields
+from toongeo.pipeline.fit.model_checksum import model_checksum
 from toongeo.protocols import HeadCamera
 
 __all__ = ["FaceFit", "FitReport", "PhotometricReport"]

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from toongeo.model.model_checksum import model_checksum
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.model_checksum import model_checksum
 from toongeo.protocols import HeadCamera
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 
