@@ -36,8 +36,7 @@ class RayEngine:
     def submit(self, work: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Begin a call."""
         # A picture that costs a worker is tried again by the batch itself.
-        begun = self._ray.remote(max_retries=0)(work.__call__ if not hasattr(work, "__name__") else work)
-        future: Future[Any] = begun.remote(*arguments).future()
+        future: Future[Any] = self._ray.remote(max_retries=0)(_called).remote(work, *arguments).future()
         return future
 
     def restart(self) -> None:
@@ -46,3 +45,8 @@ class RayEngine:
     def close(self, *, now: bool) -> None:
         """End what was begun here."""
         self._ray.shutdown()
+
+
+def _called(work: Callable[..., Any], *arguments: Any) -> Any:
+    """A function, as ray wants one, of whatever can be called."""
+    return work(*arguments)
