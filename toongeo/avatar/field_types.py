@@ -31,7 +31,8 @@ def check_field_types(instance: Any) -> None:
         ...
     ValueError: RigReport.seconds: expected float, got str
     """
-    hints = _hints(instance.__class__)
+    kind: Any = type(instance)
+    hints = _hints(kind)
     for field in fields(instance):
         value, hint = getattr(instance, field.name), hints.get(field.name, Any)
         if not _fits(value, hint):
@@ -40,7 +41,7 @@ def check_field_types(instance: Any) -> None:
 
 
 @cache
-def _hints(kind: Any) -> dict[str, Any]:
+def _hints(kind: type) -> dict[str, Any]:
     try:
         return get_type_hints(kind)
     except NameError:  # names that only type checkers import

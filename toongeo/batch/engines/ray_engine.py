@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
@@ -33,10 +32,12 @@ class RayEngine:
         self.workers, self._ray = workers, ray
         ray.init(address=address, num_cpus=workers if address is None else None, log_to_driver=False)
 
-    def submit(self, work: Callable[..., Any], *arguments: Any) -> Future[Any]:
+    def submit(self, work: Any, *arguments: Any) -> Future[Any]:
         """Begin a call."""
         # A picture that costs a worker is tried again by the batch itself.
-        future: Future[Any] = self._ray.remote(max_retries=0)(_called).remote(work, *arguments).future()
+        remote: Any = self._ray.remote(max_retries=0)
+        begun = remote(work if hasattr(work, "__name__") else work.__call__)
+        future: Future[Any] = begun.remote(*arguments).future()
         return future
 
     def restart(self) -> None:
@@ -45,8 +46,3 @@ class RayEngine:
     def close(self, *, now: bool) -> None:
         """End what was begun here."""
         self._ray.shutdown()
-
-
-def _called(work: Callable[..., Any], *arguments: Any) -> Any:
-    """A function, as ray wants one, of whatever can be called."""
-    return work(*arguments)

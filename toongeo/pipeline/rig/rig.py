@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo._read_only import read_only, restored
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.expression_schemes import SCHEMES
@@ -73,6 +74,7 @@ class Rig:
     report: RigReport
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
     __setstate__ = restored
 
     def __post_init__(self) -> None:
