@@ -111,11 +111,11 @@ def mesh_fault(verb: Callable[[np.ndarray, np.ndarray], Any], number: int) -> st
 def run(inputs: int, meshes: int, seconds: float, only: str | None, first: int, keep: bool) -> int:
     """Print faults and counts; how many faults there are."""
     chosen = {name: target for name, target in targets().items() if only in (None, name)}
-    end, faults, tried = time.monotonic() + seconds, [], Counter()
+    started, faults, tried = time.monotonic(), [], Counter()
     with tempfile.TemporaryDirectory() as folder:
         for number in range(first, first + -(-inputs // max(1, len(chosen)))):
             for name, target in chosen.items():
-                if time.monotonic() > end:
+                if time.monotonic() > started + 0.7 * seconds:  # the rest is for meshes
                     break
                 content, path = hostile(target, number, name), Path(folder) / f"file{target.suffix}"
                 if keep:
@@ -124,11 +124,10 @@ def run(inputs: int, meshes: int, seconds: float, only: str | None, first: int, 
                 tried[name] += 1
                 if why:
                     faults.append((name, number, why))
-    for name, verb in verbs().items():
-        if only not in (None, name):
-            continue
-        for number in range(first, first + meshes):
-            if time.monotonic() > end:
+    functions = {name: verb for name, verb in verbs().items() if only in (None, name)}
+    for number in range(first, first + meshes):
+        for name, verb in functions.items():
+            if time.monotonic() > started + seconds:
                 break
             tried[name] += 1
             if why := mesh_fault(verb, number):

@@ -84,8 +84,10 @@ def test_resuming_does_nothing_twice_and_notices_changes(serial, tmp_path):
 @pytest.mark.parametrize("backend", ["loky", "threading", "dask"])
 def test_every_backend_writes_the_same_bytes(serial, tmp_path, backend):
     base, _ = serial
-    if backend == "dask":
-        pytest.importorskip("distributed", reason="needs the extra `cluster`")
+    needed = {"loky": ("joblib", "batch"), "dask": ("distributed", "cluster")}
+    if backend in needed:
+        package, extra = needed[backend]
+        pytest.importorskip(package, reason=f"needs the extra `{extra}`")
     result = make_avatars(base / "in", tmp_path / "out", options=SMALL, backend=backend, workers=2)
     assert result.statuses == {"done": 1, "refused": 2}
     assert digests(tmp_path / "out") == digests(base / "out")
@@ -102,6 +104,7 @@ def test_the_time_of_a_picture_is_bounded(tmp_path):
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="memory is bounded on Linux only")
 def test_the_memory_of_a_picture_is_bounded(tmp_path):
+    pytest.importorskip("joblib", reason="needs the extra `batch`")
     folder, output = small_pictures(tmp_path / "in"), tmp_path / "out"
     result = make_avatars(folder, output, options=SMALL, workers=1, limits=BatchLimits(None, 20))
     assert result.statuses == {"over memory": 1} and digests(output) == {}
@@ -110,6 +113,7 @@ def test_the_memory_of_a_picture_is_bounded(tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_batch_leaves_whole_files_and_goes_on(tmp_path, number):
+    pytest.importorskip("joblib", reason="needs the extra `batch`")
     folder, output = small_pictures(tmp_path / "in", 5), tmp_path / "out"
     command = [sys.executable, "-m", "toongeo", "batch", folder, "-o", output, "--texture-size", "64", "--no-hair"]
     process = subprocess.Popen(

@@ -45,6 +45,7 @@ def _plain(job):
 
 
 def test_a_picture_that_kills_its_worker_is_tried_twice_and_costs_no_other(tmp_path):
+    pytest.importorskip("joblib", reason="needs the extra `batch`")
     engine = LokyEngine(2)
     try:
         found = {record["picture"]: record["status"] for record in streamed_records(engine, work, jobs(tmp_path, 8))}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
@@ -37,7 +38,12 @@ class DaskEngine:
         self._cluster: Any = None
         if scheduler is None:
             self._cluster = distributed.LocalCluster(
-                n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
             )
         try:
             self._client = distributed.Client(self._cluster or scheduler, timeout=30, set_as_default=False)

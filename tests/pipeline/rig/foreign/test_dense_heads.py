@@ -78,7 +78,9 @@ def test_loose_triangles_move_as_one_surface(model, whole):
     torn = model.faces.ravel()
     V, F = model.mean[torn], np.arange(len(torn)).reshape(-1, 3)
     found = rig_mesh(V, F, model.mean[model.landmarks])
-    assert np.abs(found.deltas - whole.deltas[:, torn]).max() < 0.5
+    off = np.abs(found.deltas - whole.deltas[:, torn]).max(axis=(0, 2))
+    # What is behind lips and lids has no partner, and takes one of several as near, by the order of vertices.
+    assert off[model.region("skin")[torn]].max() < 1e-3 and off.max() < 3
     first = np.unique(torn, return_index=True)[1]
     copies = np.abs(found.deltas - found.deltas[:, first][:, np.searchsorted(torn[first], torn)])
     border = np.isin(torn, np.unique(torn)[np.bincount(torn)[np.unique(torn)] > 0])

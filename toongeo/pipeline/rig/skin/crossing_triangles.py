@@ -15,6 +15,8 @@ __all__ = ["HOPELESS", "Sheet", "SkinPatch", "around", "crossing_all", "crossing
 
 _ROUNDS = 5  # of looking for crossings and smoothing
 _WIDTH = 4  # edges around them within which ways are smoothed
+# With so many triangles that cross after a round, and fewer by less than a fifth, four more rounds would not do.
+_MANY, _SLOW = 100, 0.8
 HOPELESS = 0.25  # of the triangles: where more cross, skin is crumpled beyond what any of this can mend
 _PASSES = 3  # of smoothing a round
 
@@ -74,8 +76,11 @@ def resolve_crossings(
         if len(hit) > allowed:
             known = crossing_all(patch, start) if known is None else known
             hit = np.setdiff1d(hit, known)
+        slow = len(hit) > max(_MANY, _SLOW * least)
         if len(hit) < least:
             best, least = ways, len(hit)
+        if slow:
+            break
         if least <= allowed:
             break
         weight = around(model, patch.vertices[patch.faces[hit]], _WIDTH)[:, None]
