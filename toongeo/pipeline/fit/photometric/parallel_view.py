@@ -62,7 +62,8 @@ def in_perspective(camera: HeadCamera, of: HeadCamera) -> HeadCamera:
     if not (isinstance(of, PerspectiveCamera) and isinstance(camera, ScaledOrthographicCamera)):
         return camera
     x, y = (camera.translation - of.principal_point) / camera.scale
-    return PerspectiveCamera(of.focal_px, camera.rotation, [x, -y, -of.focal_px / camera.scale], of.principal_point)
+    place = np.array([x, -y, -of.focal_px / camera.scale])
+    return PerspectiveCamera(of.focal_px, camera.rotation, place, of.principal_point)
 
 
 def _far(camera: PerspectiveCamera) -> ScaledOrthographicCamera:
