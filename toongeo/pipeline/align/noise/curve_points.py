@@ -27,11 +27,7 @@ def with_curve_points(landmarks: Floats, foretold: Floats) -> Floats:
     foretold : (68, 2) float, px
         Where the motion of the face takes them.
     """
-<<<<<<< HEAD
-    missing = np.asarray(~np.isfinite(landmarks).all(axis=1), bool)
-=======
     missing = np.asarray(~np.isfinite(landmarks).all(axis=1))
->>>>>>> main
     if not missing.any():
         return landmarks
     found = curve_points(landmarks)
@@ -59,11 +55,7 @@ def curve_points(landmarks: Floats) -> Floats:
     found = np.full((68, 2), np.nan)
     for curve in _CURVES:
         points = landmarks[list(curve)]
-<<<<<<< HEAD
-        there = np.asarray(np.isfinite(points).all(axis=1), bool)
-=======
         there = np.asarray(np.isfinite(points).all(axis=1))
->>>>>>> main
         for k in range(1, len(points) - 1):
             near = [j for j in (k - 2, k - 1, k + 1, k + 2) if 0 <= j < len(points) and there[j]]
             if len(near) >= 3 and there[k - 1] and there[k + 1]:
