@@ -1,6 +1,6 @@
 """Expressions that do not fold the skin around the mouth.
 
-Constants were chosen on bad_guy, manga_girl, 14 and 21 (``benchmarks/crossings.py``).
+Constants were chosen on bad_guy, manga_girl, 11, 31 and 44 (``benchmarks/crossings.py``).
 """
 
 import time
