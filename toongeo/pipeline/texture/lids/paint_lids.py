@@ -65,7 +65,8 @@ def paint_lids(texture: np.ndarray, atlas: Fragments, img: np.ndarray, face: Ali
         touched = (zone[model.faces] > 0).any(1)
         texels = np.flatnonzero(atlas.mask & touched[atlas.face_ids])
         ids, weights = atlas.face_ids.ravel()[texels], atlas.barycentrics.reshape(-1, 3)[texels]
-        values = np.column_stack([skin, zone, strip]).astype(np.float32)
+        reach = np.zeros_like(zone) if strip is None else strip
+        values = np.column_stack([skin, zone, reach]).astype(np.float32)
         at = blend_corners(values[model.faces], ids, weights)
         share = at[:, 3] ** 2 * (3 - 2 * at[:, 3])
         if spike_count(img, face, side, skin) >= _SPIKY:
