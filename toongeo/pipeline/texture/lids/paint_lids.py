@@ -60,7 +60,6 @@ def paint_lids(texture: np.ndarray, atlas: Fragments, img: np.ndarray, face: Ali
     for side, zone in zones.items():
         closed = rig.neutral + rig.deltas[rig.names.index(f"eyeBlink{side.capitalize()}")]
         strip = lid_zone(model, rig, side, edges, _SMEARED)
-        assert strip is not None  # as there is a zone
         skin = lid_membrane(model, side, zone, edges, colours, closed)
         touched = (zone[model.faces] > 0).any(1)
         texels = np.flatnonzero(atlas.mask & touched[atlas.face_ids])
