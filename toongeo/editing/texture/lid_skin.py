@@ -38,7 +38,7 @@ def lid_zones(model: MorphableModel, rig: Rig) -> np.ndarray:
         zone = core
         for _ in range(2 * _SOFTEN):
             zone = np.maximum(core * (region | (zone > 0.5)), (edges @ zone) / degree)
-        zones[side] = zone
+        zones[side] = zone * ~model.region(f"brow_{name}")  # not even its soft border: brows stay as they are drawn
     return zones
 
 

@@ -25,6 +25,7 @@ _RIM, _BRIDGE = 12.0, 6.0
 # CIELAB: skin beside the lids differs so much from that of the cheek behind tinted glasses, if there is a bridge too.
 _TINT, _TINTED_BRIDGE = 25.0, 8.0
 _DARK = 0.55  # of the cheek's lightness: all that is about an eye is darker behind dark glasses
+_LIT = 35.0  # lightness: of a face that lies in the dark, eyes are not told from glasses
 _BELOW = np.radians(np.linspace(15, 165, 61))  # where a rim is looked for, from the eye's middle, downwards
 _RADII = np.linspace(0.5, 1.15, 53)  # eye widths
 _OFF_LID = 0.18  # eye widths from the lower lid: nearer lie lashes and bags
@@ -132,7 +133,7 @@ def _is_dark(view: EyeView, bridge: float) -> bool:
         tinted.append(np.linalg.norm(near - cheek) >= _TINT)
         about = view.lab[..., 0][view.inside(eye, 1.6)]
         lightest = np.percentile(about, 90) if len(about) else np.inf
-        dark.append(lightest < _DARK * cheek[0])
+        dark.append(cheek[0] >= _LIT and lightest < _DARK * cheek[0])
     return all(dark) or (all(tinted) and bridge >= _TINTED_BRIDGE)
 
 

@@ -1,6 +1,6 @@
 """Expressions that do not fold the skin around the mouth.
 
-Constants were chosen on bad_guy, manga_girl, 14 and 21 (``benchmarks/crossings.py``).
+Constants were chosen on bad_guy, manga_girl, 11, 31 and 44 (``benchmarks/crossings.py``).
 """
 
 import time
@@ -22,11 +22,11 @@ __all__ = ["unfold_mouth"]
 
 _SEALS = ("mouthClose", "mouthPucker")  # the lips of these touch: they are given by what they seal
 _NAMES = ("cheek", "jaw", "mouth", "nose")
-_LIPS_MM = 2.0  # on the template, from the line where the lips meet: there skin lies upon skin and crosses unbent
+_LIPS_MM = 3.0  # on the template, from the line where the lips meet: there skin lies upon skin and crosses unbent
 _MOVES_MM = 0.5  # lips that move less stay as they are
 # Skin that comes to cross is sheared or turned: ends of its edges part by so much of their length, or those of edges
 # so near.
-_BENT, _REACH = 0.6, 3
+_BENT, _REACH = 0.5, 3
 _ALLOWED = 3  # triangles that may intersect others
 _SMOOTHED = ((3, 3), (5, 8))  # edges around crossings, and how often motions are made alike there
 _SURROUNDINGS = 7  # edges around crossings within which new ones are looked for
