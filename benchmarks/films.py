@@ -4,8 +4,8 @@ usage: python benchmarks/films.py [PICTURE ...]     (default: astronaut and mous
 
 A take of two seconds at 512 px, in which jaw, lids, gaze and head move. Every time is the least of the frames, in one
 process; PSNR is the least over them. "bound" is what these times leave at best on two cores, frames a second: all
-frames are drawn on both, and encoded on one of them. The rival is `Avatar.render`, from whose picture frames differ only
-where texture is minified. With --drive the command itself is run, and its frames a second counted by the clock.
+frames are drawn on both, and encoded on one of them. The rival is `Avatar.render`, from whose picture frames differ
+only where texture is minified. With --drive the command itself is run, and its frames a second counted by the clock.
 """
 
 import os
