@@ -13,7 +13,7 @@ from toongeo.colour.srgb import linear_to_srgb, srgb_to_linear
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.protocols import Camera
 from toongeo.render.interpolate import blend_corners
-from toongeo.render.paint_table import PaintTable, paint_table
+from toongeo.render.paint_table import PaintTable, minification, paint_table
 from toongeo.render.rasterize import rasterize
 from toongeo.render.spherical_harmonics import irradiance
 from toongeo.render.studio_light import studio_light
@@ -83,7 +83,7 @@ class FrameRenderer:
         self._all = np.concatenate([faces + start for faces, start in zip(self._faces, counts, strict=False)])
         px = [camera.project(part.vertices) for part in surfaces]
         table = paint_table(tuple(surfaces), camera, self._light, "unlit", px)
-        self._textures, self._texture_of = table.textures, table.texture_of
+        self._textures, self._texture_of = _filtered(table, surfaces, px), table.texture_of
         self._texels = np.ascontiguousarray(table.corners[:, :, :-3])
         self._albedo = _vertex_colours(table, self._all, counts[-1])
         self._px_per_mm = _px_per_mm(camera, np.concatenate([part.vertices for part in surfaces]))
@@ -184,6 +184,22 @@ class FrameRenderer:
         inside = (left < right) & (top < bottom)
         left, right, top, bottom = (np.where(inside, edge, 0) for edge in (left, right, top, bottom))
         return np.flatnonzero(count[bottom, right] - count[top, right] - count[bottom, left] + count[top, left])
+
+
+def _filtered(table: PaintTable, surfaces: Sequence[Surface], px: Sequence[Floats]) -> tuple[Singles, ...]:
+    """The textures as a pixel sees them, which is larger than a texel: else lines would flicker as they move.
+
+    The mean over a square pixel, of which a Gaussian has the same variance: a twelfth of its side squared.
+    """
+    textures, first = list(table.textures), 0
+    for part, points in zip(surfaces, px, strict=True):
+        index, first = int(table.texture_of[first]) if len(part.faces) else -1, first + len(part.faces)
+        if index >= 0 and textures[index] is table.textures[index]:
+            texels = minification(part, points)
+            side = texels / max(1, round(texels))
+            blurred = cv2.GaussianBlur(table.textures[index], (0, 0), side / np.sqrt(12))
+            textures[index] = np.asarray(blurred, np.float32)
+    return tuple(textures)
 
 
 def _vertex_colours(table: PaintTable, faces: Integers, count: int) -> Singles:
