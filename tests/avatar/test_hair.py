@@ -186,6 +186,22 @@ def test_hair_below_the_chin_follows_chains(worn, long_haired):
     assert (np.diff(springs.joints[..., 1]) < 0).all()
 
 
+def test_capsules_fill_neck_and_jaw_and_leave_resting_hair_alone(long_haired):
+    """Nothing of the skin is within, so that hair may lie on it, and no end of a bone."""
+    face = long_haired.face
+    springs = hair_springs(long_haired.hair, face)
+    chin = face.vertices[face.landmark_vertices[8], 1]
+    assert len(springs.capsules) == 2
+    for row, part in zip(springs.capsules, ("neck", "face"), strict=True):
+        ends, radius = row[:6].reshape(2, 3), row[6]
+        assert 10 < radius < np.ptp(face.vertices[face.region(part), 0]) / 2
+        for P in (springs.joints[:, 1:].reshape(-1, 3), face.vertices[face.region("neck")]):
+            along = np.clip((P - ends[0]) @ (ends[1] - ends[0]) / max(((ends[1] - ends[0]) ** 2).sum(), 1e-9), 0, 1)
+            assert np.linalg.norm(P - ends[0] - along[:, None] * (ends[1] - ends[0]), axis=1).min() > radius - 1e-9
+    neck, jaw = springs.capsules
+    assert max(neck[1], neck[4]) <= chin <= min(jaw[1], jaw[4]) + 1e-9
+
+
 def test_hair_sways_in_three_vrm_and_comes_to_rest(long_haired, tmp_path, node):
     long_haired.save(tmp_path / "a.vrm", texture=None)
     (verdict,) = node("validate.mjs", tmp_path / "a.vrm")

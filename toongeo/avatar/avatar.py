@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo.avatar.avatar_trimesh import avatar_trimesh
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.looks.neck_cap import neck_cap
 from toongeo.avatar.looks.soft_light import soft_light
-from toongeo.avatar.save_avatar import save_avatar
+from toongeo.avatar.save_avatar import avatar_page, save_avatar
 from toongeo.avatar.stages import AvatarStages
+from toongeo.io.shown_page import ShownPage
 from toongeo.model import atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.protocols import Camera
@@ -46,6 +48,7 @@ class Avatar(AvatarStages):
     """
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -186,6 +189,22 @@ class Avatar(AvatarStages):
         """
         eyes = [self.eye_vertices(side, weights) for side in range(len(self.eyes.templates))]
         return avatar_trimesh(self, self.vertices(weights), eyes, crop=crop, textured=textured)
+
+    def show(self, *, height: int = 520, title: str = "avatar", **options: Any) -> ShownPage:
+        """The page of ``.html`` in a frame, as the last line of a notebook's cell; it asks nothing of a network.
+
+        The notebook's file holds the whole page then, some megabytes; the avatar itself shows as a small picture. For
+        weights that go to and fro see :class:`toongeo.AvatarWidget`.
+
+        Parameters
+        ----------
+        height : int
+            Of the frame, px.
+        title : str
+        **options
+            ``crop quantize texture animation`` as of :meth:`save`.
+        """
+        return ShownPage(avatar_page(self, title, **options), height, title)
 
     def save(self, path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> None:
         """Write a file by its suffix, or what a format names.

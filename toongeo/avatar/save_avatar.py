@@ -37,7 +37,7 @@ from toongeo.io.writers.write_usdz import usd_modules
 from toongeo.model.expression_schemes import PRESETS, SCHEMES
 from toongeo.pipeline import Rig
 
-__all__ = ["avatar_attachment", "page_presets", "rig_arrays", "save_avatar", "writer_for"]
+__all__ = ["avatar_attachment", "avatar_page", "page_presets", "rig_arrays", "save_avatar", "writer_for"]
 
 _Weights = Mapping[str, float]
 _Texture = Literal["png", "jpeg"] | None
@@ -46,6 +46,8 @@ _Animation = Literal["demo"] | None | tuple[Any, Any] | tuple[Any, Any, Any]
 _EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
 _COARSE_MM = 0.04  # the same for a quantized file: a fifth of a pixel where a head is a thousand high
 _COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
+# Fields that are not in the state: the picture and a mesh of the file, and the drawing, which is not kept.
+_ELSEWHERE = ("texture", "hair", "style")
 
 
 def save_avatar(path: Path, avatar: AvatarStages, kind: str | None, options: Mapping[str, Any]) -> None:
@@ -146,7 +148,7 @@ def avatar_attachment(avatar: AvatarStages, *, coarse: bool) -> bytes:
         steps = np.float32(_COARSE_STEPS)
         parse = replace(parse, confidence=np.rint(parse.confidence * steps) / steps)
     # The camera's picture is known to the reader as the file's image, the rig's arrays as its meshes.
-    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name not in ("texture", "hair")}
+    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name not in _ELSEWHERE}
     state["parse"] = parse
     if avatar.hair is not None:
         # The mesh of the file has a point for each pair of these.
@@ -211,6 +213,22 @@ def _write_html(
     animation: _Animation = "demo",
     title: str | None = None,
 ) -> None:
+    name = path.stem if title is None else title
+    page = avatar_page(avatar, name, crop=crop, quantize=quantize, texture=texture, animation=animation)
+    atomic_write({path: page.encode("utf-8")})
+
+
+def avatar_page(
+    avatar: AvatarStages,
+    title: str,
+    *,
+    crop: Crop = "head",
+    quantize: bool = True,
+    texture: _Texture = "png",
+    animation: _Animation = "demo",
+    framed: bool = False,
+) -> str:
+    """The page of an avatar; ``framed`` as of :func:`toongeo.io.page_html`, the other options as ``.html`` has them."""
     scene = avatar_scene(
         avatar,
         crop=crop,
@@ -219,8 +237,7 @@ def _write_html(
     )
     tolerance = _COARSE_MM if quantize else _EXACT_MM
     glb = encode_glb(scene, tolerance_mm=tolerance, quantize=quantize, picture=texture or "png")
-    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets(avatar.rig))
-    atomic_write({path: page.encode("utf-8")})
+    return page_html(glb, title=title, presets=page_presets(avatar.rig), framed=framed)
 
 
 def page_presets(rig: Rig | None = None) -> dict[str, _Weights]:

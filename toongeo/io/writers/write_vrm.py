@@ -70,8 +70,8 @@ def write_vrm(
     The bones that a humanoid must have are there, in T-pose where those of an adult of 1.7 m are, in metres, the
     ground at y = 0 and the face along +Z. All meshes are skinned to the head's bone, neck included; ``eye_left`` and
     ``eye_right`` to bones of their own at their pivots, which turn them. Meshes with ``springs``
-    have the bones of these, which hang from the head's and swing (``VRMC_springBone``). Those that are unlit have MToon
-    materials.
+    have the bones of these, which hang from the head's, swing, and stay out of their capsules (``VRMC_springBone``).
+    Those that are unlit have MToon materials.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def write_vrm(
             "lookAt": _look_at((middle - head) * METRES, *gaze_degrees),
         }
     }
-    springs = spring_entry(scene, nodes)
+    springs = spring_entry(scene, nodes, "Head", head)
     if springs is not None:
         builder.use("VRMC_springBone")
         builder.json["extensions"]["VRMC_springBone"] = springs
