@@ -13,9 +13,8 @@ from toongeo.colour.srgb import linear_to_srgb, srgb_to_linear
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.protocols import Camera
 from toongeo.render.interpolate import blend_corners
-from toongeo.render.paint_table import PaintTable, paint_table
+from toongeo.render.paint_table import PaintTable, minification, paint_table
 from toongeo.render.rasterize import rasterize
-from toongeo.render.sample_image import sample_image
 from toongeo.render.spherical_harmonics import irradiance
 from toongeo.render.studio_light import studio_light
 from toongeo.render.surface import Surface
@@ -24,6 +23,7 @@ __all__ = ["FrameRenderer"]
 
 _STEEP = 4.0  # px of depth from one pixel to the next: a slope of 76 degrees, where a surface turns away or ends
 _FAR = 6.0  # texels from one pixel to the next, which are about one apart: another place of the head begins
+_ROW = 1024  # samples that are looked up at once
 _NOWHERE = np.float32(-1e6)  # depth where nothing is
 # Between black and the next colour there are 20 of these steps; elsewhere there are more.
 _ENCODED = np.rint(255 * linear_to_srgb(np.arange(2**16) / (2**16 - 1))).astype(np.uint8)
@@ -83,7 +83,7 @@ class FrameRenderer:
         self._all = np.concatenate([faces + start for faces, start in zip(self._faces, counts, strict=False)])
         px = [camera.project(part.vertices) for part in surfaces]
         table = paint_table(tuple(surfaces), camera, self._light, "unlit", px)
-        self._textures, self._texture_of = table.textures, table.texture_of
+        self._textures, self._texture_of = _filtered(table, surfaces, px), table.texture_of
         self._texels = np.ascontiguousarray(table.corners[:, :, :-3])
         self._albedo = _vertex_colours(table, self._all, counts[-1])
         self._px_per_mm = _px_per_mm(camera, np.concatenate([part.vertices for part in surfaces]))
@@ -150,7 +150,9 @@ class FrameRenderer:
             textures = self._texture_of.take(ids)
             for index, texture in enumerate(self._textures):
                 mine = np.flatnonzero(textures == index)
-                colours[mine] *= sample_image(texture, texels[mine])
+                if not len(mine):
+                    continue
+                colours[mine] *= _sampled(texture, texels[mine])
         return colours, places
 
     def _smooth(self, px: Floats, attributes: Singles, edges: Mask) -> Singles:
@@ -184,11 +186,37 @@ class FrameRenderer:
         return np.flatnonzero(count[bottom, right] - count[top, right] - count[bottom, left] + count[top, left])
 
 
+def _filtered(table: PaintTable, surfaces: Sequence[Surface], px: Sequence[Floats]) -> tuple[Singles, ...]:
+    """The textures as a pixel sees them, which is larger than a texel: else lines would flicker as they move.
+
+    The mean over a square pixel, of which a Gaussian has the same variance: a twelfth of its side squared.
+    """
+    textures, first = list(table.textures), 0
+    for part, points in zip(surfaces, px, strict=True):
+        index, first = int(table.texture_of[first]) if len(part.faces) else -1, first + len(part.faces)
+        if index >= 0 and textures[index] is table.textures[index]:
+            texels = minification(part, points)
+            side = texels / max(1, round(texels))
+            blurred = cv2.GaussianBlur(table.textures[index], (0, 0), side / np.sqrt(12))
+            textures[index] = np.asarray(blurred, np.float32)
+    return tuple(textures)
+
+
 def _vertex_colours(table: PaintTable, faces: Integers, count: int) -> Singles:
     """Linear colours (n, 3) that multiply light and texture."""
     colours = np.ones((count, 3), np.float32)
     colours[faces.ravel()] = table.corners[:, :, -3:].reshape(-1, 3)
     return colours
+
+
+def _sampled(texture: Singles, texels: Singles) -> Singles:
+    """Bilinear samples (k, 3) at texels (k, 2), to 1/32 of a texel: four times as fast as `sample_image`."""
+    count = len(texels)
+    table = np.zeros((2, -(-count // _ROW) * _ROW), np.float32)  # OpenCV knows no rows of more than 2^15
+    table[:, :count] = texels.T
+    x, y = table.reshape(2, -1, _ROW)
+    samples = cv2.remap(texture, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    return np.asarray(samples.reshape(-1, 3)[:count], np.float32)
 
 
 def _px_per_mm(camera: Camera, points: Floats) -> np.float32:

@@ -19,7 +19,7 @@ from toongeo.render.spherical_harmonics import irradiance
 from toongeo.render.surface import Surface
 from toongeo.render.uv_to_px import uv_to_px
 
-__all__ = ["PaintTable", "Shading", "paint_table"]
+__all__ = ["PaintTable", "Shading", "minification", "paint_table"]
 
 Shading = Literal["lit", "unlit", "clay"]
 
@@ -79,7 +79,7 @@ def paint_table(
         corners[start:stop, :, 2:] = shade.astype(np.float32).take(part.faces, axis=0)
         if shading == "clay" or part.texture is None or part.uv is None or part.uv_faces is None:
             continue
-        key = id(part.texture), _minification(part, points)
+        key = id(part.texture), max(1, round(minification(part, points)))
         if key not in textures:
             textures[key] = _reduced(part.texture, key[1])
         texture_of[start:stop] = list(textures).index(key)
@@ -104,18 +104,18 @@ def _shade(part: Surface, camera: Camera, light: NDArray[np.float64], shading: S
     return np.maximum(irradiance(normals, light) / np.pi, 0.0)
 
 
-def _minification(part: Surface, points: NDArray[np.float64]) -> int:
-    """Texels a subpixel, along a side: the median over the area of what faces the viewer; at least 1."""
+def minification(part: Surface, points: NDArray[np.float64]) -> float:
+    """Texels a subpixel, along a side: the median over the area of what faces the viewer; 1 if nothing does."""
     assert part.texture is not None and part.uv is not None and part.uv_faces is not None
     some = slice(None, None, 1 + len(part.faces) // _SAMPLED_FACES)
     texels = np.abs(_areas(uv_to_px(part.uv, *part.texture.shape[:2])[part.uv_faces[some]]))
     px = -_areas(points[part.faces[some]])  # y is down
     texels, px = texels[px > 0.0], px[px > 0.0]
     if len(px) == 0:
-        return 1
+        return 1.0
     ratio, order = texels / px, np.argsort(texels / px, kind="stable")
     middle = np.searchsorted(np.cumsum(px[order]), 0.5 * px.sum())
-    return max(1, round(float(np.sqrt(ratio[order[min(middle, len(order) - 1)]]))))
+    return float(np.sqrt(ratio[order[min(middle, len(order) - 1)]]))
 
 
 def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:

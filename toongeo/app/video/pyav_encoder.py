@@ -15,10 +15,10 @@ from toongeo.io import load_pyav
 __all__ = ["PyavEncoder"]
 
 # By suffix: codecs of picture and sound, and options of the first. Constant quality at which drawings show no blocks;
-# presets that take a few ms a picture of 512 px.
+# presets that take a few ms a picture of 512 px. Threads of libvpx wait by spinning, thirty times as long as one works.
 _CODECS: dict[str, tuple[str, str, dict[str, str]]] = {
     ".mp4": ("libx264", "aac", {"crf": "18", "preset": "veryfast"}),
-    ".webm": ("libvpx", "libopus", {"crf": "8", "b": "4M", "deadline": "realtime", "cpu-used": "4"}),
+    ".webm": ("libvpx", "libopus", {"crf": "8", "b": "4M", "deadline": "good", "cpu-used": "4", "threads": "1"}),
 }
 _SOUND_RATE = 48000  # Hz, of sound that is encoded anew: one that Opus knows
 _FINEST = 1001 * 240  # denominator of frame rates, of which 30000/1001 is one
