@@ -18,6 +18,7 @@ for name in ("OPENBLAS", "OMP", "MKL"):
     os.environ.setdefault(f"{name}_NUM_THREADS", "1")
 
 import numpy as np
+from pictures import FOLDER
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -25,7 +26,7 @@ sys.path.insert(0, str(ROOT))
 import toongeo as tg
 
 MOST_MB = 20.0
-PORTRAIT = ROOT / "examples" / "portraits" / "moustache_man"
+PORTRAIT = FOLDER / "moustache_man"
 
 
 def held_mb() -> float:

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from pictures import FOLDER
 from scipy.interpolate import RBFInterpolator
 
 import toongeo as tg
@@ -151,9 +152,8 @@ def contrast(lightness: np.ndarray, rim: np.ndarray, skin: np.ndarray) -> float:
 
 def seconds() -> None:
     """Processor seconds for a picture of 1024 px, beside what OpenCV has."""
-    folder = Path(__file__).parents[1] / "examples" / "portraits"
-    img = tg.read_image(folder / "astronaut.png")
-    points = tg.read_landmarks(folder / "astronaut.pts")
+    img = tg.read_image(FOLDER / "astronaut.png")
+    points = tg.read_landmarks(FOLDER / "astronaut.pts")
     img = cv2.resize(img, (1024, 1024), interpolation=cv2.INTER_CUBIC)
     points = (points + 0.5) * 2 - 0.5
     rivals = {
