@@ -1,6 +1,6 @@
 """Median error of the narrow face on subjects whose 3D shape is known, in mm, against the mean face.
 
-usage: python benchmarks/truth3d.py SHARED [--seeds 1000-1029] [--noise 1.0]
+usage: python benchmarks/truth3d.py SHARED [--seeds 1000-1029] [--noise 1.0] [--fits "default model"]
 
 SHARED holds ``bench/ict_truth.py`` (the sampler and the measure) and ``data/models/{ict_facekit,sfm}``. Subjects are
 drawn from ICT-FaceKit, and from the Surrey model, to which nothing here was calibrated. Only skin triangles count.
@@ -26,6 +26,7 @@ from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 
 OUTLIERS, OUTLIER_PX = 5, 60.0
 NEAR_MM = 6.0
+FITS = ("default model", "5 outliers of 68", "ICT-FaceKit's own model")
 
 
 class Bench:
@@ -82,18 +83,21 @@ def with_outliers(q, seed):
     return q
 
 
-def rows(bench, seeds, noise):
-    """Name -> errors (subjects,), for both populations."""
+def rows(bench, seeds, noise, wanted, populations):
+    """Name -> errors (subjects,), of the mean face and the wanted fits."""
     table = {}
-    for name, truth in bench.truths.items():
+    for name in populations:
+        truth = bench.truths[name]
         for seed in seeds:
             subject = truth.sample(seed, noise=noise)
-            fits = {"mean face": bench.template.mean, "default model": fitted(subject["q"])}
-            if name == "ICT":
+            fits = {"mean face": bench.template.mean}
+            if "default model" in wanted:
+                fits["default model"] = fitted(subject["q"])
+            if name == "ICT" and "5 outliers of 68" in wanted:
                 fits["5 outliers of 68"] = fitted(with_outliers(subject["q"], seed))
             for fit, V in fits.items():
                 table.setdefault((name, fit), []).append(bench.error(truth, subject, bench.template, V))
-            if name == "ICT":
+            if name == "ICT" and "ICT-FaceKit's own model" in wanted:
                 own = bench.error(truth, subject, bench.ict, fitted(subject["q"], bench.ict))
                 table.setdefault((name, "ICT-FaceKit's own model"), []).append(own)
     return {key: np.array(errors) for key, errors in table.items()}
@@ -108,9 +112,13 @@ def main() -> None:
     parser.add_argument("shared", type=Path)
     parser.add_argument("--seeds", default="1000-1029")
     parser.add_argument("--noise", default=1.0, type=float)
+    parser.add_argument("--fits", nargs="+", default=FITS, choices=FITS)
+    parser.add_argument("--populations", nargs="+", default=["ICT", "Surrey"], choices=["ICT", "Surrey"])
     arguments = parser.parse_args()
     first, last = map(int, arguments.seeds.split("-"))
-    table = rows(Bench(arguments.shared), range(first, last + 1), arguments.noise)
+    table = rows(
+        Bench(arguments.shared), range(first, last + 1), arguments.noise, arguments.fits, arguments.populations
+    )
     print("| subjects | shape | median error mm, mean of subjects | of the mean face | better than the mean face |")
     print("|---|---|---|---|---|")
     for (name, fit), errors in table.items():

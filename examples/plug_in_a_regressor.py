@@ -43,7 +43,7 @@ for refine in (False, True):
 #     def __call__(self, img, landmarks):
 #         with torch.inference_mode():
 #             out = self.module(torch.from_numpy(img).permute(2, 0, 1)[None] / 255.0)[0].numpy()
-#         return tg.Coefficients(identity=out[:80], expression=out[80:144])
+#         return tg.Coefficients(identity=out[:81], expression=out[81:145])
 # ```
 #
 # Any part may be left out. This one knows only that the mouth of this picture is a smile:

@@ -5,9 +5,13 @@ import os
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ[variable] = "1"
 
+import contextlib
+import http.server
 import json
 import shutil
 import subprocess
+import threading
+import urllib.parse
 from pathlib import Path
 
 import numpy as np
@@ -190,3 +194,33 @@ def browse(node, tmp_path_factory):
         return node("browse.mjs", url, folder / "steps.json", folder), folder
 
     return run
+
+
+@pytest.fixture(scope="session")
+def serve():
+    """``with serve(folder) as site:`` has tests/web and the files of a folder at ``site``, on this machine."""
+
+    @contextlib.contextmanager
+    def serving(folder):
+        class Handler(http.server.SimpleHTTPRequestHandler):
+            extensions_map = http.server.SimpleHTTPRequestHandler.extensions_map | {".mjs": "text/javascript"}
+
+            def translate_path(self, path):
+                name = urllib.parse.unquote(urllib.parse.urlsplit(path).path).lstrip("/")
+                near = Path(folder) / name
+                return str(near if near.is_file() else WEB / name)
+
+            def log_message(self, *_):
+                pass
+
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{server.server_port}"
+        finally:
+            server.shutdown()
+            thread.join()
+            server.server_close()
+
+    return serving

@@ -32,6 +32,6 @@ def test_public_objects_that_hold_arrays_print_briefly(part):
 
 def test_parts_are_named(avatar):
     assert repr(avatar).startswith("Avatar(fit=<FaceFit>, parse=<FaceParse>, face=<AlignedFace>, rig=<Rig>")
-    assert "names=<tuple of 46>" in repr(avatar.rig) and "identity=<float64 (80,)>" in repr(avatar.fit)
+    assert "names=<tuple of 46>" in repr(avatar.rig) and "identity=<float64 (81,)>" in repr(avatar.fit)
     assert "eyes=(<EyeballTemplate>, <EyeballTemplate>)" in repr(avatar.fit.model)
     assert len(repr(avatar.fit.model)) < 700

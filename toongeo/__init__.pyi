@@ -24,6 +24,7 @@ from toongeo.driving import LiveVideo as LiveVideo
 from toongeo.driving import Take as Take
 from toongeo.driving import VideoDriver as VideoDriver
 from toongeo.driving import send_weights as send_weights
+from toongeo.driving import speak as speak
 from toongeo.editing import ClassicalTextureGenerator as ClassicalTextureGenerator
 from toongeo.editing import ExpressionEditor as ExpressionEditor
 from toongeo.editing import attention_map as attention_map
@@ -95,6 +96,7 @@ from toongeo.pipeline import rendered_picture as rendered_picture
 from toongeo.pipeline import residual_map as residual_map
 from toongeo.pipeline import rig_mesh as rig_mesh
 from toongeo.pipeline import snap_eyes as snap_eyes
+from toongeo.pipeline import stylize as stylize
 from toongeo.pipeline import texture_coordinates as texture_coordinates
 from toongeo.pipeline import track_landmarks as track_landmarks
 from toongeo.pipeline import train_ridge_regressor as train_ridge_regressor
@@ -108,6 +110,9 @@ from toongeo.protocols import HairModeler as HairModeler
 from toongeo.protocols import LandmarkDetection as LandmarkDetection
 from toongeo.protocols import LandmarkDetector as LandmarkDetector
 from toongeo.protocols import LandmarkMapper as LandmarkMapper
+from toongeo.protocols import PictureWarp as PictureWarp
+from toongeo.protocols import Stylized as Stylized
+from toongeo.protocols import Stylizer as Stylizer
 from toongeo.protocols import TextureGenerator as TextureGenerator
 from toongeo.protocols import TextureGeometry as TextureGeometry
 from toongeo.render import PerspectiveCamera as PerspectiveCamera

@@ -74,7 +74,7 @@ def test_an_output_that_is_read_is_refused_before_the_work(face, no_work, capsys
         output = "folder/out.glb" if link == "folder" else "inner/../inner/./out.glb"
     before = contents(face)
     line = refused(capsys, "make", image, *MAKE[2:], "-o", output)
-    assert line.startswith("toongeo: output: expected no file that is read, but ") and f" is the {source} " in line
+    assert line.startswith("toongeo: --output: expected no file that is read, but ") and f" is the {source} " in line
     assert contents(face) == before
 
 
@@ -136,7 +136,7 @@ def test_demo_keeps_the_files_of_a_folder(face, no_work, capsys, name):
 def test_tables_keep_the_pictures_and_other_files(face, no_work, capsys, table):
     before = contents(face)
     line = refused(capsys, "bench", table, face, "-o", ".")
-    assert line == "toongeo: output: expected another folder than that of the pictures, got ."
+    assert line == "toongeo: --output: expected another folder than that of the pictures, got ."
     out = face / "out"
     out.mkdir()
     for suffix in (".csv", ".png"):

@@ -3,6 +3,8 @@
 import csv
 import json
 import os
+import re
+import wave
 from pathlib import Path
 
 import cv2
@@ -12,9 +14,15 @@ import pytest
 from tests.driving.conftest import film, rms
 from toongeo.app.cli import main
 from toongeo.app.read_take import read_landmark_take, read_take
-from toongeo.app.write_video import write_video
-from toongeo.driving import ScenePuppet
-from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, write_glb
+from toongeo.app.video import write_video as video
+from toongeo.app.video.actor_pictures import with_actor
+from toongeo.app.video.film_frames import film_frames
+from toongeo.app.video.sound import Sound
+from toongeo.app.video.write_film import _Drawing
+from toongeo.app.video.write_video import write_video
+from toongeo.avatar import load_avatar
+from toongeo.driving import AvatarPuppet, ScenePuppet, Take, head_quaternions, write_live_link
+from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, read_video, write_glb
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 LIVE_LINK = tuple(SCHEMES["live_link"])
@@ -90,9 +98,9 @@ def test_any_glb_with_named_targets_can_be_driven(avatar, take, tmp_path, option
     film = tmp_path / "out.mp4"
     assert main(["drive", str(source), "--weights", str(take), "-o", str(film), "--size", "64", "--fps", "10"]) == 0
     frames, _ = played(film)
-    puppet = ScenePuppet(after)
+    puppet = ScenePuppet(after, 64)
     for k, frame in enumerate(frames):
-        errors = [np.abs(frame - puppet.render({"jawOpen": j / 5}, 64).astype(float)).mean() for j in range(6)]
+        errors = [np.abs(frame - puppet.frame({"jawOpen": j / 5}).astype(float)).mean() for j in range(6)]
         assert int(np.argmin(errors)) == k
 
 
@@ -155,14 +163,18 @@ def test_frames_of_landmarks_without_a_face_are_held(tmp_path, avatar):
     [
         ({"--weights": "none.csv"}, "none.csv"),
         ({"--weights": "broken.csv"}, "expected columns named like ARKit's expressions, got Jaw"),
-        ({"--weights": "broken.npy"}, "broken.npy: expected an array of numbers"),
+        ({"--weights": "broken.npy"}, "expected an array of numbers in NumPy's format, but broken.npy is damaged"),
         ({"--weights": "take.txt"}, "weights: expected a .csv or .npy file"),
-        ({"-o": "take.avi"}, "output: expected a name that ends in .mp4, .glb, .csv"),
+        ({"-o": "take.avi"}, "output: expected a name that ends in .mp4, .webm, .glb, .csv"),
         ({"-o": "no/take.mp4"}, "output: no folder"),
         ({"-o": "folder.mp4"}, "it is a folder"),
         ({"-o": "folder.glb"}, "folder.glb"),
         ({"--size": "33"}, "size: expected an even number of px"),
-        ({"--fps": "0"}, "fps: expected a rate > 0"),
+        ({"--fps": "0"}, "fps: expected 1 to 240"),
+        ({"--fps": "0", "-o": "out.glb"}, "fps: expected a rate > 0"),
+        ({"--start": "3"}, "start, end: expected a frame between 3.0 and None s, got none (the take is 0.50 s long)"),
+        ({"--actor": "corner"}, "actor: expected a film of an actor (video) to show, got none"),
+        ({"--sound": "take.csv"}, "sound: expected a file with a sound, got take.csv"),
         ({"--fps": "500"}, "fps: expected 1 to 240"),
         ({"avatar": "none.glb"}, "none.glb"),
         ({"avatar": "cut.glb"}, "cut.glb is damaged or none"),
@@ -203,12 +215,116 @@ def test_an_interrupted_video_leaves_the_old_one(tmp_path):
 
 def test_an_opencv_without_encoder(tmp_path, monkeypatch):
     monkeypatch.setattr(cv2.VideoWriter, "isOpened", lambda self: False, raising=False)
-    with pytest.raises(OSError, match="OpenCV has no MPEG-4 encoder here"):
+    monkeypatch.setattr(video, "has_pyav", lambda: False)
+    with pytest.raises(OSError, match="OpenCV has no encoder for VP9 and VP8 here"):
         write_video(tmp_path / "a.mp4", iter([]), 32, 30)
+    with pytest.raises(ImportError, match=re.escape('sound in a video needs PyAV: pip install "toongeo[video]"')):
+        write_video(tmp_path / "a.mp4", iter([]), 32, 30, sound=Sound(tmp_path / "a.wav"))
     monkeypatch.undo()
-    with pytest.raises(OSError, match="0 of 0 frames are in the file"):
-        write_video(tmp_path / "a.mp4", iter([]), 32, 30)
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("pyav", [False, True])
+def test_an_empty_film_is_refused(tmp_path, monkeypatch, pyav):
+    if pyav:
+        pytest.importorskip("av")
+    monkeypatch.setattr(video, "has_pyav", lambda: pyav)
+    for name in ("a.mp4", "a.webm"):
+        with pytest.raises(OSError, match="0 of 0 frames are in the file"):
+            write_video(tmp_path / name, iter([]), 32, 30)
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_take_turns_the_head(glb, avatar, tmp_path, node):
+    """To the subject's left, which is the right of the picture; in a file all meshes go with it."""
+    angles = np.zeros((4, 3))
+    angles[:, 0] = np.linspace(0, 0.6, 4)
+    write_live_link(tmp_path / "take.csv", Take(np.arange(4) / 10, np.zeros((4, 54)), angles))
+    arguments = ["drive", str(glb), "--weights", str(tmp_path / "take.csv"), "--fps", "10", "--size", "96"]
+    assert main([*arguments, "-o", str(tmp_path / "out.mp4")]) == 0
+    last = played(tmp_path / "out.mp4")[0][-1].astype(float)
+    errors = [np.abs(last - avatar.render(size=96, yaw=yaw)).mean() for yaw in (-34.4, 0, 34.4)]
+    assert int(np.argmin(errors)) == 2
+    assert main([*arguments, "-o", str(tmp_path / "out.glb")]) == 0
+    (verdict,) = node("validate.mjs", tmp_path / "out.glb")
+    assert verdict["errors"] == verdict["warnings"] == 0
+    scene = glb_scene(read_glb(tmp_path / "out.glb"))
+    np.testing.assert_allclose(scene.animation.turns, head_quaternions(angles), atol=1e-6)
+    np.testing.assert_allclose(load_avatar(tmp_path / "out.glb").rig.neutral, load_avatar(glb).rig.neutral, atol=1e-9)
+    assert main([*arguments, "-o", str(tmp_path / "still.csv")]) == 0
+    np.testing.assert_allclose(read_take(tmp_path / "still.csv").head, angles, atol=1e-6)
+
+
+def test_only_a_stretch_is_played(glb, take, avatar, tmp_path):
+    out = tmp_path / "out.webm"
+    arguments = [
+        "--weights",
+        str(take),
+        "-o",
+        str(out),
+        "--size",
+        "64",
+        "--fps",
+        "10",
+        "--start",
+        "0.2",
+        "--end",
+        "0.4",
+    ]
+    assert main(["drive", str(glb), *arguments]) == 0
+    frames, _ = played(out)
+    assert len(frames) == 3
+    for k, frame in enumerate(frames):
+        errors = [np.abs(frame - avatar.render({"jawOpen": j / 5}, size=64).astype(float)).mean() for j in range(6)]
+        assert int(np.argmin(errors)) == k + 2
+
+
+@pytest.mark.slow
+def test_frames_are_the_same_on_any_number_of_cores(avatar):
+    puppet, weights = AvatarPuppet(avatar, 64), np.zeros((6, 54))
+    weights[:, EXPRESSIONS.index("jawOpen")] = np.linspace(0, 1, 6)
+    draw = _Drawing(puppet, list(weights), None)
+    one, several = (list(film_frames(draw, 6, processes=processes)) for processes in (1, 2))
+    np.testing.assert_array_equal(one, several)
+
+
+@pytest.mark.parametrize("where", ["beside", "corner"])
+def test_the_actor_is_seen_at_the_same_time(tmp_path, where):
+    """Greys of a film of other rate, and of faces, tell when they are."""
+    film = tmp_path / "actor.mp4"
+    write_video(film, [np.full((48, 96, 3), 10 * k, np.uint8) for k in range(20)], (48, 96), 20)
+    faces = [np.full((64, 64, 3), 200, np.uint8) for _ in range(5)]
+    shown = list(with_actor(faces, read_video(film), where, fps=10, start=0.3))
+    assert shown[0].shape == ((64, 128, 3) if where == "beside" else (64, 64, 3))
+    place = (32, 32) if where == "beside" else (57, 53)
+    greys = [int(picture[place][0]) for picture in shown]
+    np.testing.assert_allclose(greys, [60, 80, 100, 120, 140], atol=4)
+    assert all((picture[4, -4] == 200).all() for picture in shown)
+
+
+@pytest.mark.parametrize("suffix", [".mp4", ".webm"])
+def test_sound_is_kept_where_the_film_is(tmp_path, suffix):
+    """A tone that begins at 1 s of the sound begins at 0.5 s of a film from 0.5 s; passed through it is the same."""
+    av = pytest.importorskip("av")
+    samples = np.zeros(2 * 16000)
+    samples[16000:] = 8000 * np.sin(2 * np.pi * 440 * np.arange(16000) / 16000)
+    with wave.open(str(tmp_path / "tone.wav"), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(16000)
+        file.writeframes(samples.astype("<i2").tobytes())
+    film, again = tmp_path / f"a{suffix}", tmp_path / f"b{suffix}"
+    frames = [np.zeros((32, 32, 3), np.uint8)] * 15
+    write_video(film, frames, 32, 10, sound=Sound(tmp_path / "tone.wav", start=0.5))
+    write_video(again, frames, 32, 10, sound=Sound(film))
+    for path in (film, again):
+        with av.open(str(path)) as heard:
+            pieces = [piece.to_ndarray()[0] for piece in heard.decode(audio=0)]
+        sound = np.concatenate(pieces)
+        rate = 48000
+        loud = np.flatnonzero(np.abs(sound) > 0.05)
+        assert loud[0] / rate == pytest.approx(0.5, abs=0.05)
+        assert len(sound) / rate == pytest.approx(1.5, abs=0.06)
 
 
 def test_view_writes_a_page(glb, tmp_path, monkeypatch, capsys):

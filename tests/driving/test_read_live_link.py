@@ -200,3 +200,14 @@ def test_what_is_no_text_or_no_file(tmp_path):
         read_live_link(tmp_path / "take.csv")
     with pytest.raises(FileNotFoundError, match=r"none\.csv"):
         read_live_link(tmp_path / "none.csv")
+
+
+def test_gaps_may_be_held(path):
+    """Of a table whose numbers begin late and pause: the last number, or the first that there is."""
+    path.write_text("time,jawOpen\n0,\n1,0.5\n2,\n3,\n4,1\n", encoding="utf-8")
+    held, drawn = read_live_link(path, gaps="hold"), read_live_link(path)
+    assert held.weights[:, JAW].tolist() == [0.5, 0.5, 0.5, 0.5, 1]
+    np.testing.assert_allclose(drawn.weights[:, JAW], [0.5, 0.5, 2 / 3, 5 / 6, 1])
+    assert held.notes[-1].endswith("which were filled from the frames before")
+    with pytest.raises(ValueError, match="gaps: expected 'interpolate' or 'hold', got 'zero'"):
+        read_live_link(path, gaps="zero")

@@ -171,3 +171,25 @@ def test_bad_arguments(picture):
         edit_expression(*picture, reference=(None, np.full((68, 2), np.nan)))
     with pytest.raises(ValueError, match="reference: expected a picture and its landmarks"):
         edit_expression(*picture, reference=3)
+
+
+def test_a_change_is_added_to_what_the_picture_shows(picture, avatar):
+    smile = {"mouthSmileLeft": 0.5, "mouthSmileRight": 0.5}
+    editor = ExpressionEditor(*picture, avatar=avatar, pose=smile)
+    names = avatar.rig.names
+    np.testing.assert_array_equal(editor.added({}), editor.pose)
+    more = editor.added({"mouthSmileLeft": 0.3, "mouthSmileRight": 0.9, "jawOpen": -0.5})
+    changed = dict(zip(names, more[: len(names)], strict=True))
+    assert changed["mouthSmileLeft"] == pytest.approx(0.8)
+    assert changed["mouthSmileRight"] == 1.0  # no more than all of it
+    assert changed["jawOpen"] == 0.0  # what is not there cannot be taken
+
+
+def test_relative_weights_of_nothing_leave_the_picture(picture):
+    same = difference(edit_expression(*picture, {}, relative=True), picture[0])
+    assert same.mean() < 0.3
+
+
+def test_relative_weights_need_weights(picture):
+    with pytest.raises(ValueError, match="relative: expected weights"):
+        edit_expression(*picture, reference=picture, relative=True)

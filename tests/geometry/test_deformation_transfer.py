@@ -276,3 +276,32 @@ def test_unknown_weights_are_refused(bumpy):
     V, F = bumpy
     with pytest.raises(ValueError, match="weights: expected 'uniform' or 'area', got 'angle'"):
         DeformationTransfer(V, F, V, weights="angle")
+
+
+def with_sliver(thickness):
+    """A wavy sheet (49, 3), one of whose triangles is `thickness` times as high as long, and its triangles."""
+    V = np.array([[x, y, 0.1 * np.sin(x + 2 * y)] for y in range(7) for x in range(7)])
+    F = np.array([t for i in range(48) if i % 7 < 6 and i < 42 for t in ((i, i + 1, i + 7), (i + 1, i + 8, i + 7))])
+    slim = next(f for f in F if 24 in f)
+    near, far = V[[k for k in slim if k != 24]]
+    away = V[24] - (near + far) / 2
+    V[24] = (near + far) / 2 + thickness * np.linalg.norm(near - far) * away / np.linalg.norm(away)
+    return V, F
+
+
+@pytest.mark.parametrize("thickness", 10.0 ** -np.arange(1, 12))
+def test_a_sliver_throws_no_vertex_away(thickness):
+    source, F = with_sliver(thickness)
+    deformed = source * [1.1, 1.1, 1.0] + 0.05 * np.sin(np.arange(source.size)).reshape(source.shape)
+    target = source * [1.0, 1.3, 0.9]
+    found = deformation_transfer(source, deformed, F, target)
+    assert np.abs(found - target).max() < 3 * np.abs(deformed - source).max()
+    np.testing.assert_allclose(deformation_transfer(source, 2 * source, F, source), 2 * source - source[0], atol=1e-3)
+
+
+def test_slivers_of_the_template_are_none():
+    from toongeo.geometry.deformation.transfer_operators import _fullness
+    from toongeo.model import default_model
+
+    model = default_model()
+    assert (_fullness(model.mean.astype(float), model.faces.T) == 1).all()

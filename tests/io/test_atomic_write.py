@@ -75,3 +75,35 @@ def test_content_that_is_not_bytes(tmp_path):
     with pytest.raises(TypeError):
         atomic_write({tmp_path / "a": "text"})
     assert names(tmp_path) == []
+
+
+def test_a_pipe_stays_one_and_gets_the_content(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(OSError, match="cannot write .*pipe: "):  # nobody reads
+        atomic_write({tmp_path / "pipe": b"lost", tmp_path / "a": b"1"})
+    assert names(tmp_path) == ["pipe"]
+    reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        atomic_write({tmp_path / "pipe": b"read", tmp_path / "a": b"1"})
+        assert os.read(reader, 99) == b"read" and (tmp_path / "a").read_bytes() == b"1"
+    finally:
+        os.close(reader)
+    assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode) and names(tmp_path) == ["a", "pipe"]
+
+
+def test_a_device_stays_one(tmp_path):
+    (tmp_path / "link").symlink_to(os.devnull)
+    atomic_write({tmp_path / "link": b"gone"})
+    assert stat.S_ISCHR(os.stat(os.devnull).st_mode) and (tmp_path / "link").is_symlink()
+    if os.path.exists("/dev/full"):
+        (tmp_path / "full").symlink_to("/dev/full")
+        with pytest.raises(OSError, match="cannot write .*full: No space left"):
+            atomic_write({tmp_path / "full": b"no", tmp_path / "a": b"1"})
+        assert names(tmp_path) == ["full", "link"]
+
+
+@pytest.mark.parametrize("bad", [5, None, "a\0b", "a\ud800"])
+def test_what_is_no_name(tmp_path, bad):
+    with pytest.raises(ValueError, match="path: expected the name of a file, got"):
+        atomic_write({bad if not isinstance(bad, str) else tmp_path / bad: b"1"})
+    assert names(tmp_path) == []

@@ -1,6 +1,7 @@
 """GLB: what was written is what is read, to the last bit of float32."""
 
 import json
+import struct
 from dataclasses import replace
 
 import numpy as np
@@ -249,3 +250,27 @@ def test_scenes_of_others_are_refused(document, edit, message):
 def test_texture_file_and_embedded_texture_agree(tmp_path, scene, document):
     write_image(tmp_path / "t.png", scene.meshes[0].texture)
     assert (tmp_path / "t.png").read_bytes() == document.images[0]
+
+
+@pytest.mark.parametrize("extension", ["EXT_meshopt_compression", "KHR_draco_mesh_compression"])
+def test_packed_arrays_are_called_what_they_are(tmp_path, extension):
+    text = json.dumps({"asset": {"version": "2.0"}, "extensionsRequired": [extension]}).encode()
+    text += b" " * (-len(text) % 4)
+    chunk = struct.pack("<I4s", len(text), b"JSON") + text
+    (tmp_path / "a.glb").write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunk)) + chunk)
+    with pytest.raises(ValueError, match=rf"path: expected a GLB whose arrays are plain, but .*\({extension}\)"):
+        read_glb(tmp_path / "a.glb")
+
+
+@pytest.mark.parametrize(
+    "document", ["[]", "5", '{"bufferViews": 5}', '{"extensionsRequired": 5}', '{"accessors": {}}']
+)
+def test_json_of_other_types_is_damaged(tmp_path, document):
+    text = document.encode() + b" " * (-len(document) % 4)
+    chunk = struct.pack("<I4s", len(text), b"JSON") + text
+    (tmp_path / "a.glb").write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(chunk)) + chunk)
+    if document == '{"accessors": {}}':
+        assert read_glb(tmp_path / "a.glb").accessors == ()
+        return
+    with pytest.raises(ValueError, match=r"path: expected a GLB \(glTF 2.0\), but .*a\.glb is damaged or none"):
+        read_glb(tmp_path / "a.glb")

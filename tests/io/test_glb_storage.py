@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from toongeo.io import Scene, SceneMesh, encode_glb, glb_scene, read_glb, split_seams, write_glb
 
@@ -126,10 +127,78 @@ def test_a_checksum_that_is_none_is_not_intact(tmp_path, scene):
     assert not read_glb(tmp_path / "a.glb").intact
 
 
-def test_a_root_stands_above_all(tmp_path, scene):
-    document = read(tmp_path, scene, root="Armature").json
+def places(nodes, node, above):
+    """Where each node below is, m: a slow reference for what a player makes of translations and rotations."""
+    entry = nodes[node]
+    local = np.eye(4)
+    local[:3, :3] = Rotation.from_quat(entry.get("rotation", [0, 0, 0, 1])).as_matrix()
+    local[:3, 3] = entry.get("translation", [0, 0, 0])
+    world = above @ local
+    found = {entry["name"]: world[:3, 3]}
+    for child in entry.get("children", ()):
+        found |= places(nodes, child, world)
+    return found
+
+
+def test_a_body_stands_on_the_ground_in_t_pose(tmp_path, scene):
+    document = read(tmp_path, scene, body="mixamo").json
     (root,) = document["scenes"][0]["nodes"]
-    assert document["nodes"][root] == {"name": "Armature", "children": list(range(len(scene.meshes)))}
+    assert document["nodes"][root]["name"] == "Armature"
+    found = places(document["nodes"], root, np.eye(4))
+    assert len(found) == 67 + len(scene.meshes) + 2 == len(document["nodes"])
+    assert abs(found["LeftToe_End"][1]) < 0.1 and 1.5 < found["Head"][1] < 1.6
+    for name in ("Hips", "Neck", "Head"):
+        assert found[name][0] == 0
+    left, right = found["LeftHandMiddle4"], found["RightHandMiddle4"]
+    np.testing.assert_allclose(left * [-1, 1, 1], right, atol=1e-9)
+    assert left[0] > 0.7 and abs(left[1] - found["LeftArm"][1]) < 1e-9
+    assert found["LeftToe_End"][2] > found["LeftFoot"][2] + 0.05
+
+
+def test_meshes_keep_their_places_on_a_body(tmp_path, scene):
+    """All of the scene is moved by the same way, with the bone of the head, and its clip plays on."""
+    plain, worn = read(tmp_path, scene).json, read(tmp_path, scene, body="mixamo").json
+    free = {}
+    for node in plain["scenes"][0]["nodes"]:
+        free |= places(plain["nodes"], node, np.eye(4))
+    found = places(worn["nodes"], worn["scenes"][0]["nodes"][0], np.eye(4))
+    for mesh in scene.meshes:
+        np.testing.assert_allclose(found[mesh.name] - free[mesh.name], found["Head"] - [0, -0.085, -0.08], atol=1e-9)
+    assert worn["animations"] == plain["animations"]
+
+
+def test_a_head_turns_about_its_neck(tmp_path, scene, node):
+    """Two nodes above the meshes, whose own entries are as before; the file is read back as it was."""
+    angle = 0.5 * np.sin(scene.animation.times)
+    turns = np.stack([0 * angle, np.sin(angle / 2), 0 * angle, np.cos(angle / 2)], axis=1)
+    turning = replace(scene.animation, turns=turns, neck=np.array([0.0, -85, -80]))
+    plain, document = read(tmp_path, scene), read(tmp_path, replace(scene, animation=turning))
+    count = len(scene.meshes)
+    assert document.json["nodes"][:count] == plain.json["nodes"] and len(document.json["nodes"]) == count + 2
+    (root,) = document.json["scenes"][0]["nodes"]
+    found, free = places(document.json["nodes"], root, np.eye(4)), {}
+    for top in plain.json["scenes"][0]["nodes"]:
+        free |= places(plain.json["nodes"], top, np.eye(4))
+    for mesh in scene.meshes:
+        np.testing.assert_allclose(found[mesh.name], free[mesh.name], atol=1e-9)
+    again = glb_scene(document)
+    np.testing.assert_allclose(again.animation.turns, turns, atol=1e-6)
+    np.testing.assert_allclose(again.animation.neck, [0, -85, -80], atol=1e-4)
+    assert encode_glb(again, tolerance_mm=0) == encode_glb(
+        glb_scene(read(tmp_path, again, tolerance_mm=0)), tolerance_mm=0
+    )
+    write_glb(tmp_path / "a.glb", replace(scene, animation=turning))
+    (verdict,) = node("validate.mjs", tmp_path / "a.glb")
+    assert (verdict["errors"], verdict["warnings"]) == (0, 0)
+    with pytest.raises(ValueError, match="turns, neck: expected both or neither"):
+        replace(scene.animation, turns=turns)
+    with pytest.raises(ValueError, match="turns: expected quaternions of unit length"):
+        replace(turning, turns=2 * turns)
+
+
+def test_an_unknown_body_is_refused(scene):
+    with pytest.raises(ValueError, match="body: expected 'mixamo' or None, got 'robot'"):
+        encode_glb(scene, body="robot")
 
 
 def test_an_unknown_picture_is_refused(tmp_path, scene):

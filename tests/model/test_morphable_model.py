@@ -9,7 +9,7 @@ from toongeo.model.artist_model import artist_model
 
 
 def test_vertices_are_linear(model, rng):
-    a, b = rng.normal(size=80), rng.random(64)
+    a, b = rng.normal(size=81), rng.random(64)
     expected = model.mean + np.tensordot(a, model.identity, 1) + np.tensordot(b, model.expression, 1)
     np.testing.assert_allclose(model.vertices(a, b), expected, atol=1e-3)
     np.testing.assert_array_equal(model.vertices(), model.mean)
@@ -45,7 +45,7 @@ def test_uv_faces_follow_the_faces(model):
 
 
 def test_bad_arguments_are_named(model):
-    with pytest.raises(ValueError, match=r"identity: expected shape \(80,\), got \(3,\)"):
+    with pytest.raises(ValueError, match=r"identity: expected shape \(81,\), got \(3,\)"):
         model.vertices(np.zeros(3))
     with pytest.raises(ValueError, match=r"expression: expected shape \(64,\)"):
         model.vertices(None, np.zeros(46))

@@ -1,14 +1,14 @@
 // node browse.mjs URL STEPS.json FOLDER: open a page in headless Chromium, do the steps, tell what happened as JSON.
 // A step is one of {shot: file}, {slider: name, value}, {click: selector}, {key: name, on: selector}, {run: script},
 // {download: selector, file}, {wait: script}, {choose: selector, value}, {drag: script, by | to, shift}, {tap: script, times},
-// {touch: script}, {page: file}, {size: [width, height]}, {axe: context}. Scripts of drags and taps give places
+// {touch: script}, {page: file}, {size: [width, height]}, {axe: context}, {media: features}, {cpu: true}. Scripts of drags and taps give places
 // in CSS pixels, those of touches frames of places of fingers. Printed: results of the runs, console messages, requests.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 
 const [url, steps, folder] = process.argv.slice(2);
-const quiet = ['--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const quiet = ['--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--autoplay-policy=no-user-gesture-required'];
 const browser = await chromium.launch({
   executablePath: process.env.TOONGEO_CHROMIUM ?? '/usr/bin/chromium',
   args: ['--no-sandbox', '--disable-quic', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', ...quiet],
@@ -72,6 +72,11 @@ async function act(step) {
     await page.evaluate(readFileSync(new URL('node_modules/axe-core/axe.min.js', import.meta.url), 'utf8'));
     const { violations } = await page.evaluate(`axe.run(${step.axe})`);
     report.results.push(violations.map(({ id, nodes }) => [id, nodes.map(({ html, failureSummary }) => `${html.slice(0, 200)} ${failureSummary}`)]));
+  } else if (step.media) {
+    await page.emulateMedia(step.media);
+  } else if (step.cpu) {
+    const now = await cpuSeconds();
+    report.results.push(Object.fromEntries(Object.entries(now).map(([type, spent]) => [type, spent - (before[type] ?? 0)])));
   } else if (step.wait) {
     // Not waitForFunction, which evaluates in the page, whose policy forbids it.
     while (!(await page.evaluate(step.wait))) await page.waitForTimeout(30);
@@ -79,6 +84,14 @@ async function act(step) {
     report.results.push(await page.evaluate(step.run));
   }
 }
+
+// CPU seconds of each kind of process, which do not depend on how busy the computer is.
+const cdp = await browser.newBrowserCDPSession();
+async function cpuSeconds() {
+  const { processInfo } = await cdp.send('SystemInfo.getProcessInfo');
+  return Object.fromEntries(processInfo.map(({ type, cpuTime }) => [type, cpuTime]));
+}
+const before = await cpuSeconds();
 
 try {
   await page.goto(url);

@@ -12,7 +12,7 @@ from toongeo.io import read_video
 pytest.importorskip("websockets", reason="needs the extra `serve`")
 
 from tests.app.running import running
-from toongeo.app.write_video import write_video
+from toongeo.app.video.write_video import write_video
 
 LIVE = {"wait": "document.getElementById('status').textContent.startsWith('Live')"}
 MESSAGES = 1000

@@ -1,5 +1,7 @@
 """One picture that shows what became of a face."""
 
+from collections.abc import Sequence
+
 import cv2
 import numpy as np
 
@@ -25,7 +27,9 @@ _VIEWS = (("front", 0.0), ("three-quarter", 40.0), ("side", 85.0))
 _INK, _PAPER = (40, 40, 40), 255
 
 
-def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, tile: int = 320) -> np.ndarray:
+def contact_sheet(
+    avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, tile: int = 320, lines: Sequence[str] | None = None
+) -> np.ndarray:
     """Input, clay views at rest, textured views as drawn, six expressions, and the report, on one sheet.
 
     Parameters
@@ -35,6 +39,8 @@ def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, til
     landmarks : (68, 2) float, px
     tile : int
         Side of one picture of the sheet, px.
+    lines : sequence of str, optional
+        What is told in words; ``avatar.report.lines()`` if None.
 
     Returns
     -------
@@ -48,7 +54,7 @@ def contact_sheet(avatar: Avatar, img: np.ndarray, landmarks: np.ndarray, *, til
     input_tile = _titled(_input(img, landmarks, tile), "input")
     overlay = _titled(_overlay(avatar, img, landmarks, tile), "as drawn, over input")
     rows = [
-        [input_tile, *views[0], _words(avatar.report.lines(), tile)],
+        [input_tile, *views[0], _words(avatar.report.lines() if lines is None else lines, tile)],
         [overlay, *views[1], posed[0]],
         posed[1:],
     ]
@@ -90,7 +96,7 @@ def _titled(view: np.ndarray, title: str) -> np.ndarray:
     return view
 
 
-def _words(lines: list[str], tile: int) -> np.ndarray:
+def _words(lines: Sequence[str], tile: int) -> np.ndarray:
     view = np.full((tile, tile, 3), _PAPER, np.uint8)
     for i, line in enumerate(lines):
         at = (round(0.025 * tile), round((0.06 + 0.92 * i / len(lines)) * tile))

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from toongeo.app.check_output import check_output
 from toongeo.app.contact_sheet import contact_sheet
-from toongeo.app.landmark_source import LandmarkSource
 from toongeo.app.make import make
+from toongeo.app.making.head_jobs import HeadJob
 from toongeo.io import atomic_write, read_image
 from toongeo.io.side_files import check_side_files, marked_picture
 from toongeo.model import data_path
@@ -34,9 +34,10 @@ def demo(folder: Path) -> None:
     _check_folder(folder)
     image = data_path(_PICTURE)
     img = read_image(image)
-    avatar = make(image, folder / _GLB, LandmarkSource())
+    made = make(HeadJob(image, folder / _GLB))
+    avatar = made.avatar
     avatar.save(folder / _OBJ)
-    sheet = contact_sheet(avatar, img, detect_landmarks(img).points)
+    sheet = contact_sheet(avatar, img, detect_landmarks(img).points, lines=made.lines())
     atomic_write({folder / _SHEET: marked_picture(sheet, _OWNER)})
     for path in sorted(folder.iterdir()):
         print(f"{path.stat().st_size / 1e6:7.2f} MB  {path}")

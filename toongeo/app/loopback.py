@@ -4,9 +4,28 @@ import secrets
 from collections.abc import Sequence
 from http import HTTPStatus
 
-__all__ = ["HOST", "refusal"]
+__all__ = ["HOST", "check_port", "refusal"]
 
 HOST = "127.0.0.1"  # loopback, and nothing else: a face is nobody else's business
+
+
+def check_port(port: int) -> None:
+    """Refuse what is no port.
+
+    Raises
+    ------
+    ValueError
+        If it is not in 0..65535.
+
+    Examples
+    --------
+    >>> check_port(99999)
+    Traceback (most recent call last):
+        ...
+    ValueError: port: expected 0 (a free one) to 65535, got 99999
+    """
+    if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port < 2**16:
+        raise ValueError(f"port: expected 0 (a free one) to 65535, got {port!r}")
 
 
 def refusal(

@@ -2,13 +2,17 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver, unit_weights
+from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver, read_live_link, unit_weights
 from toongeo.io import read_landmark_frames, read_video
 from toongeo.model.expression_schemes import EXPRESSIONS
+from toongeo.reading.check_file import check_file
+from toongeo.reading.npy_array import npy_array
+from toongeo.reading.promise import promise
 
 __all__ = ["TakeSource", "read_landmark_take", "read_take"]
 
@@ -29,6 +33,8 @@ class TakeSource:
         Frames a second, of a file that does not say it, or instead of what it says.
     scheme : str
         What the landmarks are: see :func:`toongeo.read_landmark_file`.
+    gaps : {"interpolate", "hold"}
+        What stands where a table has no numbers: see :func:`toongeo.driving.read_live_link`.
     """
 
     weights: Path | None = None
@@ -36,6 +42,7 @@ class TakeSource:
     video: Path | None = None
     fps: float | None = None
     scheme: str = "auto"
+    gaps: Literal["interpolate", "hold"] = "interpolate"
 
     def __post_init__(self) -> None:
         if sum(file is not None for file in self.files.values()) != 1:
@@ -55,14 +62,14 @@ class TakeSource:
             If the file cannot be read or is not what it should be.
         """
         if self.weights is not None:
-            return read_take(self.weights, self.fps)
+            return read_take(self.weights, self.fps, gaps=self.gaps)
         if self.landmarks is not None:
             return read_landmark_take(self.landmarks, self.fps, scheme=self.scheme)
         video = read_video(str(self.video))
         return VideoDriver().take(video if self.fps is None else replace(video, fps=self.fps))
 
 
-def read_take(path: Path, fps: float | None = None) -> Take:
+def read_take(path: Path, fps: float | None = None, *, gaps: Literal["interpolate", "hold"] = "interpolate") -> Take:
     """A take of weights: a Live Link Face ``.csv``, or an ``.npy`` of (f, 52) ARKit weights or (f, 54) of ours.
 
     Raises
@@ -72,7 +79,7 @@ def read_take(path: Path, fps: float | None = None) -> Take:
     """
     suffix = path.suffix.lower()
     if suffix == ".csv":
-        return ArkitDriver().take(path, fps)
+        return read_live_link(path, fps=fps, gaps=gaps)
     if suffix != ".npy":
         raise ValueError(f"weights: expected a .csv or .npy file, got {path}")
     frames, notes = unit_weights(_array(path), str(path))
@@ -102,7 +109,6 @@ def read_landmark_take(path: Path, fps: float | None = None, *, scheme: str = "a
 
 
 def _array(path: Path) -> NDArray[np.float64]:
-    try:
-        return np.asarray(np.load(path, allow_pickle=False), np.float64)
-    except (ValueError, EOFError, TypeError) as error:
-        raise ValueError(f"{path}: expected an array of numbers in NumPy's format ({error})") from None
+    check_file(path)
+    with path.open("rb") as stream, promise(path, "an array of numbers in NumPy's format"):
+        return np.asarray(npy_array(stream, path.stat().st_size, kinds="biuf"), np.float64)

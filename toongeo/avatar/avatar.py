@@ -19,12 +19,14 @@ from toongeo.model import atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.protocols import Camera
 from toongeo.render import (
+    FrameRenderer,
     ScaledOrthographicCamera,
     Surface,
     irradiance,
     render_mesh,
     studio_light,
 )
+from toongeo.render.picture_size import picture_size
 
 if TYPE_CHECKING:
     import trimesh
@@ -40,7 +42,7 @@ class Avatar(AvatarStages):
     """What :func:`toongeo.make_avatar` builds; every stage's result is kept.
 
     Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
-    ``eyes``, ``texture``, ``report`` and ``hair``.
+    ``eyes``, ``texture``, ``report``, ``hair`` and ``style``.
     """
 
     __repr__ = brief_repr
@@ -146,12 +148,17 @@ class Avatar(AvatarStages):
         ValueError
             For weights as :meth:`vertices`; if the size is not positive.
         """
+        picture_size(size)
         camera = camera or self._camera(size, yaw, pitch)
         surfaces = self.surfaces(weights)
         if not textured:
             return render_mesh(surfaces, camera, size, shading="clay")
         # The texture holds the light of the picture already: a soft light shows the shape without shading it twice.
         return render_mesh(surfaces, camera, size, light=_soft_light())
+
+    def frame_renderer(self, size: int = 512, yaw: float = 0.0, pitch: float = 0.0) -> FrameRenderer:
+        """What draws films of the :meth:`surfaces` of this avatar as :meth:`render` does, faster."""
+        return FrameRenderer(self.surfaces(), self._camera(size, yaw, pitch), size, light=_soft_light())
 
     def to_trimesh(self, weights: Weights = None, *, crop: Crop = "head", textured: bool = True) -> trimesh.Scene:
         """Head, teeth, tongue and eyeballs with an expression, as ``trimesh.Trimesh`` objects.
@@ -211,12 +218,13 @@ class Avatar(AvatarStages):
             half as big again.
         texture : {"png", "jpeg", None}
             None: each part in its mean colour.
-        animation : "demo", None, or a pair of times (f,) in s and weights (f, 46) or (f, 54)
+        animation : "demo", None, or times (f,) in s, weights (f, 46) or (f, 54) and, if the head turns, unit
+            quaternions (f, 4) x, y, z, w about the neck: ``toongeo.driving.head_quaternions``
         names : {"toongeo", "arkit", "talkinghead"}
             Of the targets: the rig's 46 and 8 directions of gaze; exactly the 52 of ARKit; or what players look for
             that speak by Oculus visemes, such as TalkingHead: those 52, 15 ``viseme_*``, ``mouthOpen``,
             ``mouthSmile``, ``eyesClosed``, ``eyesLookUp`` and ``eyesLookDown``, in meshes ``Wolf3D_Head``,
-            ``Wolf3D_Teeth``, ... below a node ``Armature``, which has no bones.
+            ``Wolf3D_Teeth``, ... on the head of a body of 67 bones below a node ``Armature``.
         sparse : bool
             False: every target stores every vertex, for readers that know no sparse accessors.
         loadable : bool

@@ -4,6 +4,7 @@ import numpy as np
 
 from toongeo.model.ibug68 import OUTER_EYES, PARTS
 from toongeo.pipeline import AlignedFace, LandmarkEvidence, Rig
+from toongeo.pipeline.texture.find_glasses import Glasses
 
 __all__ = ["beyond_warnings"]
 
@@ -13,12 +14,18 @@ _CLOSED = 0.1
 # Outer-eye distances that jawOpen moves the inner lips apart; on ten pictures 0.22 to 0.49, the least a mouth drawn
 # a quarter of the eyes' distance wide.
 _OPENS = 0.1
+_GLASSES = {
+    "clear": "the glasses in the picture are left out of the head",
+    "dark": "dark glasses hide the eyes: they are left out of the head, and its eyes are made up",
+}
 _INNER_LIPS = (61, 62, 63), (67, 66, 65)
 
 
-def beyond_warnings(evidence: LandmarkEvidence, landmarks: np.ndarray, face: AlignedFace, rig: Rig) -> list[str]:
-    """Sentences about a blank picture, points of another one, profiles, closed and hidden eyes, and mouths that do
-    not open.
+def beyond_warnings(
+    evidence: LandmarkEvidence, landmarks: np.ndarray, face: AlignedFace, rig: Rig, glasses: Glasses | None = None
+) -> list[str]:
+    """Sentences about a blank picture, points of another one, profiles, closed and hidden eyes, glasses, and mouths
+    that do not open.
 
     Parameters
     ----------
@@ -28,6 +35,8 @@ def beyond_warnings(evidence: LandmarkEvidence, landmarks: np.ndarray, face: Ali
         NaN rows are missing.
     face : AlignedFace
     rig : Rig
+    glasses : Glasses or None
+        Those that were found and left out of the head.
     """
     warnings = []
     if evidence.is_blank:
@@ -37,6 +46,8 @@ def beyond_warnings(evidence: LandmarkEvidence, landmarks: np.ndarray, face: Ali
         warnings.append(
             f"the picture hardly shows a face at the landmarks (chance {chance:.1f} %): are they another's?"
         )
+    elif glasses is not None:
+        warnings.append(_GLASSES[glasses.kind])
     elif evidence.has_dark_glasses:
         warnings.append("the eyes seem to be behind dark glasses, which are painted on lids and eyeballs")
     yaw = abs(face.camera.yaw)

@@ -8,12 +8,11 @@ from toongeo.avatar.scene import Shapes
 from toongeo.io import Scene
 from toongeo.model.expression_schemes import PRESETS, SCHEMES
 
-__all__ = ["Names", "PLAYER_MESHES", "PLAYER_ROOT", "export_targets", "renamed_scene"]
+__all__ = ["Names", "PLAYER_MESHES", "export_targets", "renamed_scene"]
 
 Names = Literal["toongeo", "arkit", "talkinghead"]
-# What players that speak by Oculus visemes look for, as in avatars of Ready Player Me: meshes below a node, 15 visemes
-# of which three have letters for names, and five mixtures.
-PLAYER_ROOT = "Armature"
+# What players that speak by Oculus visemes look for, as in avatars of Ready Player Me: names of meshes, 15 visemes of
+# which three have letters for names, and five mixtures.
 PLAYER_MESHES = {
     "head": "Wolf3D_Head",
     "teeth": "Wolf3D_Teeth",

@@ -11,10 +11,12 @@ from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, split_seams
 from toongeo.model import MorphableModel, atlas_coordinates, default_model
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.pipeline import Hair
+from toongeo.reading.promise import promised
 
 __all__ = ["load_avatar"]
 
 
+@promised("a GLB that Avatar.save wrote")
 def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = None) -> Avatar:
     """Read a ``.glb`` that :meth:`toongeo.Avatar.save` wrote.
 
@@ -63,7 +65,7 @@ def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = 
         state = decode_state(document.attachment, known, model)
         hair = _hair(scene, state.pop("hair", None))
         return Avatar(**state, texture=_texture(scene.meshes[0]), hair=hair)
-    except (LookupError, TypeError, AttributeError, ValueError) as error:
+    except (LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, ValueError) as error:
         raise ValueError(f"path: {path} cannot be loaded: {error}") from error
 
 

@@ -14,6 +14,7 @@ from toongeo.avatar.beyond import beyond_warnings
 from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, detection_warnings, eye_warnings, landmark_errors, shape_warnings
 from toongeo.avatar.rigged import mouth_warnings, posed, rigged
+from toongeo.avatar.styled import check_stylizer, styled
 from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import check_image
 from toongeo.metrics import mesh_quality
@@ -41,12 +42,14 @@ from toongeo.pipeline.align.size_teeth import size_teeth
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
 from toongeo.pipeline.texture.bake_texture import check_size
+from toongeo.pipeline.texture.find_glasses import find_glasses
+from toongeo.pipeline.texture.without_glasses import without_glasses
 from toongeo.plugins import plugin
-from toongeo.protocols import FaceParser, HairModeler, LandmarkDetector
+from toongeo.protocols import FaceParser, HairModeler, LandmarkDetector, Stylizer
 
 __all__ = ["STAGES", "make_avatar"]
 
-STAGES = ("fit", "parse", "align", "rig", "eyes", "hair", "texture", "report")
+STAGES = ("fit", "style", "parse", "align", "rig", "eyes", "hair", "texture", "report")
 _ALIGNERS: Mapping[str, Callable[[FaceFit, np.ndarray], AlignedFace]] = {
     "cartoon": partial(align_face, noise=0),  # what noise the landmarks had is out of them by then
     "caricature": align_caricature,
@@ -58,6 +61,7 @@ def make_avatar(
     landmarks: np.ndarray | None = None,
     *,
     model: MorphableModel | None = None,
+    fit: FaceFit | None = None,
     detector: str | LandmarkDetector | None = None,
     parser: str | FaceParser | None = None,
     noise: Noise = "auto",
@@ -69,6 +73,7 @@ def make_avatar(
     rig: Literal["transfer", "caricature"] = "transfer",
     hair: bool | HairModeler = True,
     hair_mask: GivenMask = None,
+    style: str | Stylizer | None = None,
     texture_size: int = 1024,
     scheme: Any = "ibug68",
     progress: Callable[[str], None] | None = None,
@@ -84,6 +89,9 @@ def make_avatar(
     model : MorphableModel, optional
         :func:`toongeo.default_model` unless another is given. What it does not have (eyeballs, teeth, expressions,
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
+    fit : FaceFit, optional
+        To these landmarks, as one of :func:`toongeo.fit_3dmm_together`: it is kept, with its identity and
+        model. Not with ``snap`` or ``photometric``, which fit again.
     detector : LandmarkDetector or str, optional
         Finds the landmarks if none are given: see :func:`toongeo.detect_landmarks`.
     parser : FaceParser or str, optional
@@ -115,6 +123,9 @@ def make_avatar(
         ``report.warnings`` says so and all is as with False: hair is painted on the head.
     hair_mask : (H, W) array_like or path, optional
         Pixels of hair, made by hand or by another program, in place of :func:`toongeo.find_hair`: bool, or 0..255.
+    style : {"toon", "chibi", "caricature", "ink", "painted"} or Stylizer, optional
+        Draw the photograph first (:func:`toongeo.stylize`, or what is given): the head is made of the drawing. None
+        takes the picture as it is, as drawings want.
     texture_size : int
         Side of the texture atlas in texels.
     scheme : str, or a table
@@ -127,13 +138,14 @@ def make_avatar(
     -------
     Avatar
         What each stage gave is kept in it: ``fit``, ``parse``, ``face``, ``rig``, ``eyes``, ``texture``, ``report``,
-        ``hair``.
+        ``hair``, ``style``.
 
     Raises
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, no face was found where none are
-        given, or method, rig, hair or noise is unknown.
+        given, method, rig, hair, style or noise is unknown, or a fit comes without landmarks or with what would change
+        it.
     """
     align = _ALIGNERS.get(method)
     if align is None:
@@ -147,6 +159,10 @@ def make_avatar(
             f"hair: expected True, False or a HairModeler, got {type(hair).__name__}; masks are hair_mask="
         )
     check_noise(noise)
+    stylizer = check_stylizer(style)
+    changed = snap or photometric or stylizer is not None or not isinstance(scheme, str)
+    if fit is not None and (landmarks is None or changed):
+        raise ValueError("fit: expected landmarks by name with it, and no snap, photometric or style, which fit again")
     clock = _Clock(progress)
 
     clock.start("fit")
@@ -154,19 +170,27 @@ def make_avatar(
     if landmarks is None:
         found = detect_landmarks(img, detector=detector)
         landmarks, scheme, doubts = found.points, "ibug68", detection_warnings(found)
-    model = model or default_model()
+    kept, model = fit, fit.model if fit is not None else model or default_model()
     if isinstance(scheme, str):
         landmarks = ibug_landmarks(landmarks, scheme)
-        fit = fit_3dmm(img, landmarks, model=model)
+        fit = kept or fit_3dmm(img, landmarks, model=model)
     else:
         fit = fit_3dmm(img, landmarks, model=model, scheme=scheme)
         landmarks = fit.project(fit.vertices[fit.landmark_vertices])
     given, cleaned = landmarks, denoise_landmarks(fit, landmarks, noise)
     if cleaned.change:
         landmarks = cleaned.points
+        fit = kept or fit_3dmm(img, landmarks, model=model)
+    drawn, faults = read_mask(hair_mask, img.shape)
+    drawing = None
+    if stylizer is not None:
+        clock.start("style")
+        drawing = styled(img, landmarks, stylizer)
+        drawn = None if drawn is None else drawing.warp.picture(drawn.astype(np.float32)) > 0.5
+        img, landmarks = drawing.texture, drawing.landmarks
+        given = landmarks
         fit = fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
-    drawn, faults = read_mask(hair_mask, img.shape)
     parse = parse_face(img, landmarks, fit, parser=plugin(parser, "parser"), hair_mask=drawn)
     if snap:
         clock.start("fit")
@@ -195,11 +219,13 @@ def make_avatar(
         head = add_hair(img, face, shapes, parse, None if hair is True else hair)
         face, shapes = head.face, head.rig
     clock.start("texture")
-    irises = find_irises(img, landmarks)
+    glasses = find_glasses(img, landmarks)
+    bare = img if glasses is None else without_glasses(img, landmarks, glasses, parse)
+    irises = find_irises(bare, landmarks)
     eyes = aim_eyes(face, eyes, irises)
     shown = parse if head.hair is None else under_hair(parse, face)
-    texture = bake_texture(img, face, rig=shapes, size=texture_size, parse=shown)
-    texture = bake_eyes(img, face, eyes, texture, irises)
+    texture = bake_texture(bare, face, rig=shapes, size=texture_size, parse=shown)
+    texture = bake_eyes(bare, face, eyes, texture, irises)
     clock.start("report")
     quality = mesh_quality(face.vertices, face.faces[face.region("face")[face.faces].all(1)])
     report = AvatarReport(
@@ -211,7 +237,7 @@ def make_avatar(
             *doubts,
             *fit.report.warnings,
             *([str(cleaned.change)] if cleaned.change else []),
-            *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes),
+            *beyond_warnings(landmark_evidence(img, goal), goal, face, shapes, glasses),
             *missing_parts(model),
             *shape_warnings(face, eyes, quality),
             *(eye_warnings(irises) if model.has("eyes") else ()),
@@ -220,7 +246,15 @@ def make_avatar(
         ),
     )
     return Avatar(
-        fit=fit, parse=parse, face=face, rig=shapes, eyes=eyes, texture=texture, report=report, hair=head.hair
+        fit=fit,
+        parse=parse,
+        face=face,
+        rig=shapes,
+        eyes=eyes,
+        texture=texture,
+        report=report,
+        hair=head.hair,
+        style=drawing,
     )
 
 

@@ -10,7 +10,14 @@ from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Iris
 from toongeo.protocols import LandmarkDetection
 
-__all__ = ["AvatarReport", "detection_warnings", "eye_warnings", "landmark_errors", "shape_warnings"]
+__all__ = [
+    "AvatarReport",
+    "detection_warnings",
+    "eye_warnings",
+    "landmark_errors",
+    "outer_eye_distance",
+    "shape_warnings",
+]
 
 _FEW_INTERSECTIONS = 0.003  # of the triangles of the face; more are worth a warning
 
@@ -22,7 +29,8 @@ class AvatarReport:
     Attributes
     ----------
     coarse, aligned : part -> RMS
-        Landmark error of the fitted and of the aligned face by part, as a fraction of the outer-eye distance.
+        Landmark error of the fitted and of the aligned face by part, as a fraction of the outer-eye distance. The
+        aligned face is forced through its landmarks: its error tells nothing about the face, unless they were noisy.
     quality : MeshQuality
         Of the triangles of the region ``face`` among themselves.
     seconds : stage -> float
@@ -42,7 +50,7 @@ class AvatarReport:
         stages = [f"{stage:<9}{seconds:7.2f} s" for stage, seconds in self.seconds.items()]
         return [
             "landmark error, RMS / outer-eye distance",
-            "part        coarse   aligned",
+            "part        coarse   aligned (forced)",
             *errors,
             f"self-intersecting: {len(quality.intersecting)} of {quality.selected} triangles of the face",
             *stages,
@@ -54,8 +62,13 @@ class AvatarReport:
 def landmark_errors(face: FaceFit | AlignedFace, landmarks: np.ndarray) -> dict[str, float]:
     """Landmark error by part / outer-eye distance (that of the face where an outer corner is missing)."""
     found = face.project(face.vertices[face.landmark_vertices])
+    return landmark_error(found, landmarks, scale=outer_eye_distance(landmarks, found))
+
+
+def outer_eye_distance(landmarks: np.ndarray, found: np.ndarray) -> float:
+    """The unit of landmark errors, px; corners that are missing are taken from where they were found."""
     right, left = np.where(np.isfinite(landmarks), landmarks, found)[list(OUTER_EYES)]
-    return landmark_error(found, landmarks, scale=float(np.linalg.norm(left - right)))
+    return float(np.linalg.norm(left - right))
 
 
 def detection_warnings(found: LandmarkDetection) -> tuple[str, ...]:

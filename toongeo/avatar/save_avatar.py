@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from toongeo.avatar.crop_faces import Crop
-from toongeo.avatar.export_targets import PLAYER_MESHES, PLAYER_ROOT, Names, export_targets, renamed_scene
+from toongeo.avatar.export_targets import PLAYER_MESHES, Names, export_targets, renamed_scene
 from toongeo.avatar.scene import avatar_scene, demo_clip, own_shapes, uv_colours, weight_clip
 from toongeo.avatar.stages import AvatarStages
 from toongeo.avatar.state import encode_state
@@ -38,7 +38,7 @@ __all__ = ["avatar_attachment", "page_presets", "rig_arrays", "save_avatar", "wr
 
 _Weights = Mapping[str, float]
 _Texture = Literal["png", "jpeg"] | None
-_Animation = Literal["demo"] | None | tuple[Any, Any]
+_Animation = Literal["demo"] | None | tuple[Any, Any] | tuple[Any, Any, Any]
 _EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
 _COARSE_MM = 0.04  # the same for a quantized file: a fifth of a pixel where a head is a thousand high
 _COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
@@ -98,7 +98,7 @@ def _write_glb(
         quantize=quantize,
         picture=texture or "png",
         sparse=sparse,
-        root=PLAYER_ROOT if player else None,
+        body="mixamo" if player else None,
         attachment=avatar_attachment(avatar, coarse=quantize) if loadable and whole else None,
     )
 
@@ -155,11 +155,11 @@ def rig_arrays(rig: Rig) -> dict[str, np.ndarray]:
 def _animation(rig: Rig, animation: _Animation) -> SceneAnimation | None:
     if animation is None:
         return None
-    if isinstance(animation, tuple) and len(animation) == 2:
+    if isinstance(animation, tuple) and len(animation) in (2, 3):
         return weight_clip(rig, *animation)
     if isinstance(animation, str) and animation == "demo":
         return demo_clip(rig)
-    raise ValueError(f"animation: expected 'demo', None or a pair of times and weights, got {animation!r}")
+    raise ValueError(f"animation: expected 'demo', None, or times, weights and turns, got {animation!r}")
 
 
 def _check_texture(texture: _Texture) -> _Texture:

@@ -14,6 +14,7 @@ from toongeo.geometry import vertex_normals
 from toongeo.io import Scene, SceneAnimation, SceneMesh
 from toongeo.model import MorphableModel, atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES, gaze_names
+from toongeo.model.anatomy.neck import NECK_MM
 from toongeo.model.anatomy.parts import SIDES, TEETH
 from toongeo.pipeline import AlignedFace, Eyes, Hair, Rig
 from toongeo.render import sample_image, uv_to_px
@@ -22,6 +23,7 @@ __all__ = ["Shapes", "avatar_scene", "demo_clip", "head_parts", "own_shapes", "w
 
 _FRAMES_PER_SECOND = 30
 # The clip: (seconds, weights reached then), linear in between.
+_LARGEST_WEIGHT, _LONGEST_S = 1e6, 1e6  # as of weights everywhere; eleven days
 _CLIP: tuple[tuple[float, dict[str, float]], ...] = (
     (0.0, {}),
     (0.5, {}),
@@ -112,7 +114,7 @@ def demo_clip(rig: Rig) -> SceneAnimation:
     return SceneAnimation(times, {"head": np.column_stack(columns)}, name="demo")
 
 
-def weight_clip(rig: Rig, times: object, weights: object) -> SceneAnimation:
+def weight_clip(rig: Rig, times: object, weights: object, turns: object = None) -> SceneAnimation:
     """Weights over time, for :func:`avatar_scene`.
 
     Parameters
@@ -121,18 +123,29 @@ def weight_clip(rig: Rig, times: object, weights: object) -> SceneAnimation:
     times : (f,) s, increasing, the first >= 0
     weights : (f, 46) or (f, 54)
         Of the rig's expressions, then of the ``eyeLook*`` names.
+    turns : (f, 4), optional
+        Unit quaternions x, y, z, w by which the head turns about its neck.
 
     Raises
     ------
     ValueError
-        If they are not of these shapes, or not finite.
+        If they are not of these shapes, not finite, or beyond what float32 of the file can hold in play.
     """
-    k, given = len(rig.names), np.asarray(weights, np.float64)
+    try:
+        k, given, at = len(rig.names), np.asarray(weights, np.float64), np.asarray(times, np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"animation: expected times (f,) and weights (f, k), got no numbers ({error})") from None
     whole = k + len(GAZE_NAMES)
     if given.ndim != 2 or given.shape[1] not in (k, whole):
         raise ValueError(f"animation: expected weights (f, {k}) or (f, {whole}), got shape {given.shape}")
+    if not (np.abs(given) <= _LARGEST_WEIGHT).all() or not (np.abs(at) <= _LONGEST_S).all():  # nor NaN
+        raise ValueError(
+            f"animation: expected finite weights up to {_LARGEST_WEIGHT:g} and times up to {_LONGEST_S:g} s"
+        )
     given = np.pad(given, ((0, 0), (0, whole - given.shape[1])))
-    return SceneAnimation(np.asarray(times, np.float64), {"head": given}, name="take")
+    turning = None if turns is None else np.asarray(turns, np.float64)
+    neck = None if turns is None else NECK_MM
+    return SceneAnimation(at, {"head": given}, name="take", turns=turning, neck=neck)
 
 
 def _part(avatar: AvatarStages, name: str, kept: np.ndarray, shapes: Shapes, crop: Crop) -> SceneMesh:
@@ -218,7 +231,7 @@ def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[Sc
         for mesh in meshes
         if mesh.target_names
     }
-    return SceneAnimation(animation.times, by_mesh, name=animation.name)
+    return replace(animation, weights=by_mesh)
 
 
 def _plain(mesh: SceneMesh) -> SceneMesh:

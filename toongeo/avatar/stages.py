@@ -7,7 +7,7 @@ import numpy as np
 from toongeo._read_only import read_only, restored
 from toongeo.avatar.report import AvatarReport
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Hair, Rig
-from toongeo.protocols import FaceParse
+from toongeo.protocols import FaceParse, Stylized
 
 __all__ = ["AvatarStages"]
 
@@ -28,6 +28,9 @@ class AvatarStages:
     report : AvatarReport
     hair : Hair or None
         A mesh of its own, rigid on the head; None where hair is painted on the head, or there is none.
+    style : Stylized or None
+        The drawing of a photograph that the avatar was made of; None if it was made of the picture itself, and in
+        avatars that were read from a file, which does not keep it.
     """
 
     fit: FaceFit
@@ -38,6 +41,7 @@ class AvatarStages:
     texture: np.ndarray
     report: AvatarReport
     hair: Hair | None = None
+    style: Stylized | None = None
 
     __setstate__ = restored
 

@@ -1,1 +1,1 @@
-"""Colour spaces."""
+"""Colour spaces, and cuts that follow colours."""

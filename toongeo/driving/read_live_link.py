@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -15,13 +16,17 @@ from toongeo.driving.table.times import frame_times
 from toongeo.driving.table.unit_weights import unit_weights
 from toongeo.driving.take import Take
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
+from toongeo.reading.promise import promised
 
 __all__ = ["read_live_link", "scheme_matrix"]
 
+_Gaps = Literal["interpolate", "hold"]
+_FROM = {"interpolate": "around", "hold": "before"}
 _HEAD = ("HeadYaw", "HeadPitch", "HeadRoll")
 
 
-def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None) -> Take:
+@promised("a table of weights")
+def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None, gaps: _Gaps = "interpolate") -> Take:
     """A take that the app Live Link Face has recorded, or another table of weights.
 
     Parameters
@@ -33,12 +38,13 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None) ->
     fps : float, optional
         Frames a second that the last part of a time code counts, or of a file without times. None: the rate that the
         time codes show, or 60.
+    gaps : {"interpolate", "hold"}
+        Numbers that are missing are drawn from the frames around, or are those of the frame before.
 
     Returns
     -------
     Take
-        Numbers that are missing, as in frames without a face, are drawn from the frames around; a frame that is there
-        twice counts once. ``notes`` says what was filled and left out.
+        A frame that is there twice counts once. ``notes`` says what was filled and left out.
 
     Raises
     ------
@@ -48,15 +54,17 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None) ->
         If no column is an expression or one is twice there, a line has another number of cells, a cell is no number,
         or times go back; says which line and column.
     """
+    if gaps not in get_args(_Gaps):
+        raise ValueError(f"gaps: expected 'interpolate' or 'hold', got {gaps!r}")
     table = read_table(Path(path))
     columns, notes = expression_columns(table)
     times = frame_times(table, fps)
     kept = np.r_[True, np.diff(times) > 0]
     repeated = len(kept) - kept.sum()
     values = {name: table.numbers(column)[kept] for name, column in columns.items()}
-    gaps = np.any([np.isnan(values[name]) for name in values], axis=0)
+    missing = np.any([np.isnan(values[name]) for name in values], axis=0)
     times = times[kept]
-    filled = {name: _filled(times, column, f"{path}: column {name}") for name, column in values.items()}
+    filled = {name: _filled(times, column, f"{path}: column {name}", gaps) for name, column in values.items()}
     weights = np.zeros((len(times), len(EXPRESSIONS)))
     for name, column in filled.items():
         for own, share in SCHEMES["live_link"].get(name, {name: 1.0}).items():
@@ -65,8 +73,8 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None) ->
     head = np.column_stack([filled[name] for name in _HEAD]) if set(_HEAD) <= set(filled) else None
     if repeated:
         notes += (f"{repeated} frames with the time of the one before were left out",)
-    if gaps.any():
-        notes += (f"{gaps.sum()} of {len(times)} frames have gaps, which were filled from the frames around",)
+    if missing.any():
+        notes += (f"{missing.sum()} of {len(times)} frames have gaps, which were filled from the frames {_FROM[gaps]}",)
     return Take(times - times[0], weights, head, (*table.notes, *notes, *unit))
 
 
@@ -79,9 +87,12 @@ def scheme_matrix(scheme: str, names: Sequence[str]) -> Floats:
     return matrix
 
 
-def _filled(times: Floats, values: Floats, what: str) -> Floats:
-    """Numbers without gaps: linear in between, the nearest beyond."""
+def _filled(times: Floats, values: Floats, what: str, gaps: _Gaps) -> Floats:
+    """Numbers without gaps: linear in between or the last one, the nearest beyond."""
     known = np.isfinite(values)
     if not known.any():
         raise ValueError(f"{what}: expected a number in at least one frame, got none")
+    if gaps == "hold":
+        last = np.maximum.accumulate(np.where(known, np.arange(len(known)), known.argmax()))
+        return np.asarray(values[last])
     return np.interp(times, times[known], values[known])

@@ -42,10 +42,12 @@ def send_weights(
     ImportError
         If ``websockets`` is not installed.
     ValueError
-        If the server refuses the token, or does not understand a frame.
+        If the address is none, the server refuses the token or is none of ours, or does not understand a frame.
     OSError
         If there is no server, it goes away, or no page answers in time.
     """
+    if fps is not None and not (np.isfinite(fps) and fps > 0):
+        raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
     websockets = load_websockets()
     sent, applied = 0, 0
     try:
@@ -58,8 +60,12 @@ def send_weights(
                     time.sleep(max(0.0, started + sent / fps - time.monotonic()))
             while applied < sent:
                 applied += _applied(socket.recv(timeout=timeout))
+    except websockets.InvalidURI as error:
+        raise ValueError(f"url: expected ws://127.0.0.1:PORT/source?token=..., got {url!r} ({error})") from None
     except websockets.InvalidStatus as error:
         raise ValueError(f"url: the server refuses it ({error})") from None
+    except websockets.InvalidHandshake as error:
+        raise ValueError(f"url: expected the server of toongeo serve, {url} is none ({error})") from None
     except websockets.ConnectionClosed as error:
         raise ConnectionError(f"the server closed the connection ({error})") from None
     except TimeoutError:
@@ -68,7 +74,10 @@ def send_weights(
 
 
 def _applied(answer: str) -> int:
-    content = json.loads(answer)
-    if "error" in content:
-        raise ValueError(f"frames: {content['error']}")
-    return int(content["applied"])
+    try:
+        content = json.loads(answer)
+        if "error" in content:
+            raise ValueError(f"frames: {content['error']}")
+        return int(content["applied"])
+    except (LookupError, TypeError, json.JSONDecodeError, RecursionError, OverflowError) as error:
+        raise ValueError(f"url: expected the server of toongeo serve, its answer is none ({error!r})"[:300]) from None

@@ -13,6 +13,7 @@ from toongeo.model.expression_schemes import EXPRESSIONS
 
 __all__ = ["Take"]
 
+_TICK = 1e-6  # s, of rounding
 _MOST_FRAMES = 10**6  # 4.6 hours at 60 frames a second, 0.4 GB
 
 
@@ -27,7 +28,8 @@ class Take:
     weights : (f, 54) float64
         Columns as in ``toongeo.model.expression_schemes.EXPRESSIONS``.
     head : (f, 3) float64, radians, or None
-        Yaw, pitch and roll of the head as the recording has them, without a promise about their signs.
+        Yaw, pitch and roll of the head as the recording has them; they are taken for those of ARKit, see
+        ``toongeo.driving.head_rotation``.
     notes : tuple of str
         What a reader filled or left out.
     """
@@ -61,6 +63,24 @@ class Take:
     def seconds(self) -> float:
         """From the first frame to the last."""
         return float(self.times[-1] - self.times[0])
+
+    def between(self, start: float | None = None, end: float | None = None) -> Take:
+        """The frames from one time to another, s from the first frame, at times that begin at 0 again.
+
+        Raises
+        ------
+        ValueError
+            If there is no frame between them.
+        """
+        since = self.times - self.times[0]
+        kept = (since >= (0.0 if start is None else start) - _TICK) & (
+            since <= (np.inf if end is None else end) + _TICK
+        )
+        if not kept.any():
+            length = f"the take is {self.seconds:.2f} s long"
+            raise ValueError(f"start, end: expected a frame between {start} and {end} s, got none ({length})")
+        times = self.times[kept]
+        return Take(times - times[0], self.weights[kept], None if self.head is None else self.head[kept], self.notes)
 
     def resampled(self, fps: float) -> Take:
         """The same at a steady rate; linear in between."""

@@ -2,11 +2,13 @@
 
 from types import ModuleType, SimpleNamespace
 
+from toongeo._extras import missing_extra
+
 __all__ = ["load_websockets"]
 
 
 def load_websockets() -> SimpleNamespace:
-    """``serve``, ``broadcast``, ``connect`` and the errors ``ConnectionClosed`` and ``InvalidStatus``.
+    """``serve``, ``broadcast``, ``connect`` and the errors ``ConnectionClosed``, ``InvalidStatus`` and so on.
 
     Raises
     ------
@@ -19,7 +21,9 @@ def load_websockets() -> SimpleNamespace:
         broadcast=server.broadcast,
         connect=client.connect,
         ConnectionClosed=errors.ConnectionClosed,
+        InvalidHandshake=errors.InvalidHandshake,
         InvalidStatus=errors.InvalidStatus,
+        InvalidURI=errors.InvalidURI,
     )
 
 
@@ -29,5 +33,5 @@ def _modules() -> tuple[ModuleType, ModuleType, ModuleType]:
         import websockets.exceptions
         import websockets.sync.client
     except ImportError as error:
-        raise ImportError('live driving needs websockets: pip install "toongeo[serve]"') from error
+        raise ImportError(missing_extra("live driving", "serve")) from error
     return websockets.asyncio.server, websockets.sync.client, websockets.exceptions

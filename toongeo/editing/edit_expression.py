@@ -19,6 +19,7 @@ def edit_expression(
     landmarks: np.ndarray | None = None,
     weights: Mapping[str, float] | np.ndarray | None = None,
     *,
+    relative: bool = False,
     reference: tuple[np.ndarray | None, np.ndarray] | None = None,
     generator: TextureGenerator | None = None,
     scheme: Any = "ibug68",
@@ -33,6 +34,9 @@ def edit_expression(
         that :func:`toongeo.detect_landmarks` finds.
     weights : mapping of name to weight, (46,) array or (54,) array
         The expression of the result. 1 is the full expression; names that are left out are 0.
+    relative : bool
+        Add the weights to what the picture shows, each then kept in [0, 1]: a smiling face smiles more, and its eyes
+        and mouth stay as they are drawn where nothing is named. A weight below 0 takes of it. For weights only.
     reference : (picture or None, landmarks), optional
         Instead of weights: a normal face whose expression is taken over.
     generator : TextureGenerator, optional
@@ -48,14 +52,18 @@ def edit_expression(
     Raises
     ------
     ValueError
-        If neither or both of weights and reference are given, no face can be fitted to the reference, a name is
-        unknown (the nearest are suggested), or for pictures and landmarks as :func:`toongeo.make_avatar`.
+        If neither or both of weights and reference are given, relative with a reference, no face can be fitted to the
+        reference, a name is unknown (the nearest are suggested), or for pictures and landmarks as
+        :func:`toongeo.make_avatar`.
     """
     if (weights is None) == (reference is None):
         raise ValueError("weights, reference: expected one of them, got " + ("neither" if weights is None else "both"))
+    if relative and reference is not None:
+        raise ValueError("relative: expected weights to add to the picture's, got a reference, whose are taken over")
     wanted = weights if reference is None else reference_weights(reference, scheme=scheme)
     landmarks = np.asarray(given_or_found(img, landmarks, scheme))
-    return ExpressionEditor(img, landmarks, generator=generator, scheme=scheme).frame(wanted)
+    editor = ExpressionEditor(img, landmarks, generator=generator, scheme=scheme)
+    return editor.frame(editor.added(wanted) if relative else wanted)
 
 
 def reference_weights(

@@ -94,6 +94,24 @@ class ExpressionEditor:
         region[self._warp.box] = self._warp.freedom > 0
         return region
 
+    def added(self, change: Weights) -> np.ndarray:
+        """Weights (46 + 8,) of an expression that is the picture's and a change of it, each kept in [0, 1].
+
+        Where the picture shows more of one than 1, or less than 0, what it shows is the limit.
+
+        Parameters
+        ----------
+        change : mapping of name to weight, (46,) array or (54,) array
+            Added to :attr:`pose`. Names that are left out are as in the picture, and with 0 everywhere so is the frame.
+
+        Raises
+        ------
+        ValueError
+            As :meth:`frame`.
+        """
+        wanted = self.pose + self.avatar.rig.weights(change)
+        return np.clip(wanted, np.minimum(self.pose, 0.0), np.maximum(self.pose, 1.0))
+
     def weights(self, weights: Weights | FaceFit) -> np.ndarray:
         """Checked weights (46 + 8,): those of :meth:`frame`, with the picture's gaze unless another is named.
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from toongeo.editing.attention_map import MAP_SIDE, attention_map
 from toongeo.editing.texture.atlas_raster import AtlasRaster
-from toongeo.editing.texture.lid_skin import lash_lines, lid_skin
+from toongeo.editing.texture.lid_skin import lash_lines
+from toongeo.editing.texture.match_colours import to_lab
 from toongeo.editing.texture.mouth_palette import mouth_palette
 from toongeo.editing.texture.new_skin import NewSkin
 from toongeo.editing.texture.openings import lid_closing, lips_parted
@@ -17,6 +18,7 @@ from toongeo.editing.texture.spread_field import spread_field
 from toongeo.geometry import vertex_normals
 from toongeo.model import MorphableModel
 from toongeo.pipeline import Rig
+from toongeo.pipeline.texture.closed_lids import closed_lids
 from toongeo.protocols import TextureGeometry
 from toongeo.render import srgb_to_linear
 
@@ -24,6 +26,8 @@ __all__ = ["ClassicalTextureGenerator"]
 
 _OUTWARD = 0.6  # cosine to the front beyond which a lip is its red
 _PLAIN = 60.0  # of 255: a colour that differs more from the skin's is a line's and says nothing about the light
+_FLAT, _SHADED = 1.0, 6.0  # L: spread of the lightness of plain skin without and with full shading
+_MOST_RELIEF = 0.6  # of that of an avatar's lids, which are seen in the light of a viewer
 _GRAIN, _MOST_GRAIN = 0.006, 24.0  # s.d. of the atlas's side; of 255
 _INNER_LIP = 0.8  # of the lightness of the lips
 
@@ -58,7 +62,7 @@ class ClassicalTextureGenerator:
         linear = srgb_to_linear((new.colours / 255).astype(np.float32)).mean(1)
         plain = new.skin & (np.abs(new.colours - np.median(new.colours[new.skin], axis=0)).max(1) < _PLAIN)
         self._ratio = ShadingRatio(linear, V, model.faces, plain)
-        clean = lid_skin(model, new.colours, new.zones)
+        clean = closed_lids(model, rig, new.zones, new.colours, _relief(new.colours[plain])).astype(np.float32)
         for part in (model.region("lip_upper"), model.region("lip_lower")):
             own = lip & part if (lip & part).any() else lip
             clean[new.inner_lip & part] = _INNER_LIP * np.median(new.colours[own], axis=0)
@@ -67,10 +71,12 @@ class ClassicalTextureGenerator:
         covered = np.zeros(self.size**2, bool)
         covered[raster.texels] = True
         self._clean = spread_field(raster.image(clean), covered.reshape(self.size, self.size))
-        masks = raster.image(np.column_stack([*new.zones, new.fresh]))
+        # Cavity and inner lips, which are hardly ever drawn; then teeth and tongue, which the atlas may have as drawn.
+        seldom = new.inner & ~model.region("mouth_cavity")
+        masks = raster.image(np.column_stack([*new.zones, new.fresh * ~seldom, new.fresh * seldom]))
         masks = np.moveaxis(spread_field(masks, covered.reshape(self.size, self.size)), 2, 0)
         _add_grain(self._clean, texture, masks[:2])
-        self._zone_texels, self._fresh_texels = [_boxed(mask) for mask in masks[:2]], _boxed(masks[2])
+        self._fresh_texels = [_boxed(mask) for mask in masks]
         self._lashes = [_boxed(line) for line in lash_lines(model, V, self.size)]
         self._coarse = AtlasRaster(model.faces, model.uv, model.uv_faces, min(self.size, MAP_SIDE))
 
@@ -91,17 +97,25 @@ class ClassicalTextureGenerator:
             raise ValueError(f"texture: expected {self.size} x {self.size} texels, got {texture.shape}")
         closing = lid_closing(self.model, geometry.source, geometry.target)
         parted = lips_parted(self.model, geometry.target)
+        opened = parted * (1 - lips_parted(self.model, geometry.source))
         attention = attention_map(geometry, self.size, extra=self._new.shown(closing, parted), raster=self._coarse)
         ratio = self._coarse.image(self._ratio(geometry.source, geometry.target)[:, None], empty=1.0)
         ratio = cv2.resize(cv2.GaussianBlur(ratio, (0, 0), 1.0), (self.size, self.size), interpolation=cv2.INTER_LINEAR)
         ratio = cv2.merge([ratio, ratio, ratio])
         colour = texture * ratio
-        for strength, (box, share) in zip((*closing, parted), (*self._zone_texels, self._fresh_texels), strict=True):
+        for strength, (box, share) in zip((*closing, parted, opened), self._fresh_texels, strict=True):
             # Folded lids have normals that say little, so what is new is lit as it was matched.
             colour[box] += strength * share * (self._clean[box] - colour[box])
         for strength, (box, cover) in zip(closing, self._lashes, strict=True):
             colour[box] += strength * cover * (self._new.lash_colour - colour[box])
         return np.clip(colour, 0, 255, out=colour), attention
+
+
+def _relief(skin: np.ndarray) -> float:
+    """How much a drawing is shaded, from 0 for flat colour to its most, by the lightness of plain skin (k, 3)."""
+    lightness = to_lab(skin)[:, 0]
+    spread = np.subtract(*np.percentile(lightness, [75, 25])) / 1.35
+    return float(_MOST_RELIEF * np.clip((spread - _FLAT) / (_SHADED - _FLAT), 0, 1))
 
 
 def _add_grain(clean: np.ndarray, texture: np.ndarray, zones: np.ndarray) -> None:

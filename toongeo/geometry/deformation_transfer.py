@@ -71,8 +71,9 @@ class DeformationTransfer:
     Every triangle, with a fourth vertex ``v4 = v1 + n / sqrt|n|`` along its normal (Eq. 14 of Pan et al.
     2024), is mapped by an affine ``Q_j`` from the source at rest to the source deformed (Eq. 15). The
     target's vertices minimise ``sum_j |Q_j - Q'_j|_F^2`` (Eq. 16, squared as Sumner and Popovic have it,
-    each triangle alike whatever its area). The target's fourth vertices occur in one term each and are
-    eliminated; what remains has the same minimiser and a third of the unknowns.
+    each triangle alike whatever its area; but slivers, of sines below 0.001, count less by the square of it: their
+    gradients are next to unknown, and would throw their corners far away). The target's fourth vertices occur in one
+    term each and are eliminated; what remains has the same minimiser and a third of the unknowns.
 
     The gradients are those of the world's axes: they are carried over as they are, so source and target have to face
     the same way. ``align=True`` sees to that; a rigid motion of one of the meshes then only moves the result along.

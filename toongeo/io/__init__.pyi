@@ -10,6 +10,9 @@ from toongeo.io.landmark_array import landmark_array as landmark_array
 from toongeo.io.landmarks.landmark_schemes import SCHEMES as SCHEMES
 from toongeo.io.landmarks.landmark_schemes import ibug_points as ibug_points
 from toongeo.io.page_html import page_html as page_html
+from toongeo.io.pyav_adapter import has_pyav as has_pyav
+from toongeo.io.pyav_adapter import has_sound as has_sound
+from toongeo.io.pyav_adapter import load_pyav as load_pyav
 from toongeo.io.readers.open_camera import Camera as Camera
 from toongeo.io.readers.open_camera import open_camera as open_camera
 from toongeo.io.readers.read_glb import GlbDocument as GlbDocument
@@ -24,6 +27,7 @@ from toongeo.io.readers.read_mesh import read_mesh as read_mesh
 from toongeo.io.readers.read_mesh_landmarks import read_mesh_landmarks as read_mesh_landmarks
 from toongeo.io.readers.read_obj import ObjData as ObjData
 from toongeo.io.readers.read_obj import read_obj as read_obj
+from toongeo.io.readers.read_sound import read_sound as read_sound
 from toongeo.io.readers.read_video import Video as Video
 from toongeo.io.readers.read_video import read_video as read_video
 from toongeo.io.scene import Scene as Scene
@@ -33,6 +37,7 @@ from toongeo.io.split_seams import split_seams as split_seams
 from toongeo.io.spring_chains import SpringChains as SpringChains
 from toongeo.io.trimesh_scene import trimesh_scene as trimesh_scene
 from toongeo.io.writers.animate_glb import animate_glb as animate_glb
+from toongeo.io.writers.animate_glb import head_bone as head_bone
 from toongeo.io.writers.animate_glb import morph_targets as morph_targets
 from toongeo.io.writers.vrm_meta import VrmMeta as VrmMeta
 from toongeo.io.writers.write_glb import write_glb as write_glb

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import stat
 import uuid
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,7 +15,8 @@ def atomic_write(files: Mapping[str | os.PathLike[str], bytes]) -> None:
 
     Every content goes to a temporary file in the folder of its target first; only when all are on the disk
     are they renamed to their names. A file that existed keeps its old content until then. A symbolic link
-    is followed.
+    is followed. A device or a pipe of that name stays what it is: the content goes into it, after all files are on
+    the disk.
 
     Parameters
     ----------
@@ -24,9 +26,11 @@ def atomic_write(files: Mapping[str | os.PathLike[str], bytes]) -> None:
 
     Raises
     ------
+    ValueError
+        If a path is no name of a file.
     OSError
-        If a target cannot be written (missing folder, a folder of that name, no permission, disk full);
-        says which.
+        If a target cannot be written (missing folder, a folder of that name, no permission, disk full, a pipe that
+        nobody reads); says which.
 
     Examples
     --------
@@ -38,10 +42,17 @@ def atomic_write(files: Mapping[str | os.PathLike[str], bytes]) -> None:
     """
     staged: list[tuple[str, Path]] = []
     target = Path()
+    for path in files:
+        _check_name(path)
     try:
         for path, content in files.items():
             target = Path(path)
-            staged.append((_staged(Path(os.path.realpath(path)), content), target))
+            if not _is_special(target):
+                staged.append((_staged(Path(os.path.realpath(path)), content), target))
+        for path, content in files.items():
+            target = Path(path)
+            if _is_special(target):
+                _pour(target, content)
         while staged:
             temporary, target = staged[0]
             os.replace(temporary, os.path.realpath(target))
@@ -53,6 +64,33 @@ def atomic_write(files: Mapping[str | os.PathLike[str], bytes]) -> None:
     finally:
         for temporary, _ in staged:
             os.unlink(temporary)
+
+
+def _check_name(path: object) -> None:
+    try:
+        os.fsencode(path)  # type: ignore[arg-type]
+    except (TypeError, UnicodeEncodeError) as error:  # no name at all, half a character
+        raise ValueError(f"path: expected the name of a file, got {path!r} ({error})") from None
+    if "\0" in os.fsdecode(path):  # type: ignore[arg-type]
+        raise ValueError(f"path: expected the name of a file, got one with a zero byte: {path!r}")
+
+
+def _is_special(target: Path) -> bool:
+    """Whether a device, pipe or socket is there, whose place no file may take."""
+    try:
+        mode = target.stat().st_mode
+    except OSError:
+        return False
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
+
+
+def _pour(target: Path, content: bytes) -> None:
+    """Into a device, or into a pipe if somebody reads from it."""
+    # Opening a pipe would wait for a reader; without waiting it fails where there is none.
+    descriptor = os.open(target, os.O_WRONLY | getattr(os, "O_NONBLOCK", 0))
+    os.set_blocking(descriptor, True)
+    with os.fdopen(descriptor, "wb") as stream:
+        stream.write(content)
 
 
 def _staged(target: Path, content: bytes) -> str:

@@ -1,8 +1,9 @@
 """A scene as the bytes of a binary glTF 2.0 file."""
 
-from typing import get_args
+from typing import Literal, get_args
 
 from toongeo.io.gltf.glb_builder import GlbBuilder
+from toongeo.io.gltf.mixamo_body import add_mixamo_body
 from toongeo.io.gltf.scene_parts import GlbOptions, Picture, add_scene
 from toongeo.io.scene import Scene
 
@@ -17,7 +18,7 @@ def encode_glb(
     quantize: bool = False,
     picture: Picture = "png",
     sparse: bool = True,
-    root: str | None = None,
+    body: Literal["mixamo"] | None = None,
     attachment: bytes | None = None,
 ) -> bytes:
     """Binary glTF: a node a mesh, sparse float32 morph targets, embedded textures, one animation.
@@ -41,8 +42,9 @@ def encode_glb(
         ``"png"``, or ``"jpeg"``, which is smaller and not exact.
     sparse
         False: every target stores every vertex, for readers that know no sparse accessors.
-    root
-        Name of a node above all others; :func:`glb_scene` does not read such files.
+    body
+        "mixamo": the meshes hang from the head of the 67 bones of Mixamo's humanoids, below a node ``Armature``,
+        without a skin; :func:`glb_scene` does not read such files.
     attachment
         Bytes that :func:`read_glb` gives back and other programs do not look at.
 
@@ -54,12 +56,16 @@ def encode_glb(
     Raises
     ------
     ValueError
-        If ``tolerance_mm`` is negative, or ``picture`` is neither.
+        If ``tolerance_mm`` is negative, or ``picture`` or ``body`` is none of these.
     """
     if not tolerance_mm >= 0:
         raise ValueError(f"tolerance_mm: expected >= 0, got {tolerance_mm}")
     if picture not in get_args(Picture):
         raise ValueError(f"picture: expected 'png' or 'jpeg', got {picture!r}")
+    if body not in ("mixamo", None):
+        raise ValueError(f"body: expected 'mixamo' or None, got {body!r}")
     builder = GlbBuilder()
-    add_scene(builder, scene, GlbOptions(normal_deltas, tolerance_mm, quantize, picture, sparse, root))
+    add_scene(builder, scene, GlbOptions(normal_deltas, tolerance_mm, quantize, picture, sparse))
+    if body is not None:
+        add_mixamo_body(builder, scene)
     return builder.encode(attachment)

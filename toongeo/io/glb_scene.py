@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from toongeo.colour.srgb import linear_to_srgb
+from toongeo.io.gltf.scene_parts import NECK, NECK_REST
 from toongeo.io.readers.read_glb import GlbDocument
 from toongeo.io.scene import METRES, Scene, SceneAnimation, SceneMesh
 
@@ -40,12 +41,18 @@ def glb_scene(document: GlbDocument) -> Scene:
     try:
         with np.errstate(all="ignore"):  # numbers that are no longer finite are refused by the scene
             nodes = document.json.get("nodes", [])
-            above = {child: node for node in nodes for child in node.get("children", [])}
-            meshes = [_mesh(document, node, above.get(k), textures) for k, node in enumerate(nodes)]
+            above = {child: node for node in nodes if not _of_neck(node) for child in node.get("children", [])}
+            hung = [(k, node) for k, node in enumerate(nodes) if not _of_neck(node)]
+            meshes = [_mesh(document, node, above.get(k), textures) for k, node in hung]
         return Scene(tuple(meshes), _animation(document))
     except (LookupError, TypeError, AttributeError, ArithmeticError, OSError) as error:  # OSError: of the picture
         reason = f"{type(error).__name__}: {error}"[:200]
         raise ValueError(f"document: expected a GLB as toongeo writes it, got another ({reason})") from error
+
+
+def _of_neck(node: dict[str, Any]) -> bool:
+    """Whether a node is one of those about which all others turn."""
+    return "mesh" not in node and node.get("name") in (NECK, NECK_REST)
 
 
 def _mesh(
@@ -121,8 +128,12 @@ def _animation(document: GlbDocument) -> SceneAnimation | None:
     animation = document.json["animations"][0]
     times = document.accessors[animation["samplers"][0]["input"]]
     tracks: dict[str, dict[str, NDArray]] = {"weights": {}, "rotation": {}}
+    nodes = document.json["nodes"]
     for channel in animation["channels"]:
         values = document.accessors[animation["samplers"][channel["sampler"]]["output"]]
-        name = document.json["nodes"][channel["target"]["node"]]["name"]
+        name = nodes[channel["target"]["node"]]["name"]
         tracks[channel["target"]["path"]][name] = values.reshape(len(times), -1)
-    return SceneAnimation(times, tracks["weights"], tracks["rotation"], animation["name"])
+    turns = tracks["rotation"].pop(NECK, None) if any(map(_of_neck, nodes)) else None
+    places = [np.array(node["translation"]) / METRES for node in nodes if _of_neck(node) and node["name"] == NECK]
+    neck = None if turns is None else places[0]
+    return SceneAnimation(times, tracks["weights"], tracks["rotation"], animation["name"], turns, neck)

@@ -48,6 +48,9 @@ def page_html(
     """
     if glb[:4] != b"glTF":
         raise ValueError(f"glb: expected the bytes of a .glb file, got {glb[:8]!r}")
+    if not isinstance(title, str):
+        raise ValueError(f"title: expected text, got {type(title).__name__}")
+    title = title.encode("utf-8", "replace").decode()  # half a character, as of a name in another encoding
     script = (PAGE / "viewer.js").read_text(encoding="utf-8")
     style = (PAGE / "page.css").read_text(encoding="utf-8")
     settings = {"title": title, "presets": presets or {}, "live": live}

@@ -156,6 +156,10 @@ class SceneAnimation:
         Mesh name -> (f, k), a column a target.
     rotations
         Mesh name -> (f, 4) unit quaternions x, y, z, w about the mesh's pivot.
+    turns
+        (f, 4) unit quaternions by which all meshes turn together, about ``neck``.
+    neck
+        (3,) mm, model frame; needed for ``turns``.
     name
         Of the clip.
     """
@@ -164,6 +168,8 @@ class SceneAnimation:
     weights: Mapping[str, NDArray[np.floating]] = field(default_factory=dict)
     rotations: Mapping[str, NDArray[np.floating]] = field(default_factory=dict)
     name: str = "demo"
+    turns: NDArray[np.floating] | None = None
+    neck: NDArray[np.floating] | None = None
 
     __repr__ = brief_repr
 
@@ -176,8 +182,14 @@ class SceneAnimation:
         weights = {mesh: _finite(f"weights of {mesh!r}", w, (f, None)) for mesh, w in self.weights.items()}
         rotations = {mesh: _finite(f"rotations of {mesh!r}", q, (f, 4)) for mesh, q in self.rotations.items()}
         for mesh, quaternions in rotations.items():
-            if np.abs(np.linalg.norm(quaternions, axis=1) - 1).max() > 1e-4:
-                raise ValueError(f"rotations of {mesh!r}: expected quaternions of unit length")
+            _check_unit(f"rotations of {mesh!r}", quaternions)
+        if (self.turns is None) != (self.neck is None):
+            raise ValueError("turns, neck: expected both or neither")
+        if self.turns is not None:
+            turns = _finite("turns", self.turns, (f, 4))
+            _check_unit("turns", turns)
+            object.__setattr__(self, "turns", turns)
+            object.__setattr__(self, "neck", _finite("neck", self.neck, (3,)))
         object.__setattr__(self, "weights", weights)
         object.__setattr__(self, "rotations", rotations)
 
@@ -216,6 +228,11 @@ class Scene:
             if weights.shape[1] != targets[name] or not targets[name]:
                 got = f"{weights.shape[1]} columns for {targets[name]} targets"
                 raise ValueError(f"animation: weights of {name!r} have {got}")
+
+
+def _check_unit(label: str, quaternions: NDArray[np.floating]) -> None:
+    if np.abs(np.linalg.norm(quaternions, axis=1) - 1).max() > 1e-4:
+        raise ValueError(f"{label}: expected quaternions of unit length")
 
 
 def _finite(label: str, values: object, shape: tuple[int | None, ...]) -> NDArray[np.floating]:

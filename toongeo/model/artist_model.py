@@ -1,6 +1,7 @@
 """The head that ships with the library, as its artists made it."""
 
 import csv
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,10 +12,28 @@ from toongeo.model.data_path import data_path
 from toongeo.model.eyeball_template import EyeballTemplate
 from toongeo.model.morphable_model import MorphableModel
 
-__all__ = ["artist_model"]
+__all__ = ["MoreModes", "artist_model", "recombined"]
 
 
-def artist_model(axes: np.ndarray | None = None) -> MorphableModel:
+@dataclass(frozen=True, eq=False)
+class MoreModes:
+    """Identity modes beside those of the artist.
+
+    Attributes
+    ----------
+    cage : (c, n0, 3) float16, mm
+        On the control cage.
+    eye_centres : (2, c, 3) float32, mm
+        Left and right eyeball.
+    eye_radii : (2, c) float32, mm
+    """
+
+    cage: np.ndarray
+    eye_centres: np.ndarray
+    eye_radii: np.ndarray
+
+
+def artist_model(axes: np.ndarray | None = None, more: MoreModes | None = None) -> MorphableModel:
     """The default template without its prior: an artist's choice of 80 identity modes, and of how far faces differ.
 
     Its modes are stored on a control cage and refined by one Catmull-Clark step when it is loaded; since the step is
@@ -24,6 +43,8 @@ def artist_model(axes: np.ndarray | None = None) -> MorphableModel:
     ----------
     axes : (80, c) float, optional
         Coefficients of other identity modes in those of the artist; these take their place.
+    more : MoreModes, optional
+        Modes that follow them.
 
     Examples
     --------
@@ -34,9 +55,13 @@ def artist_model(axes: np.ndarray | None = None) -> MorphableModel:
     with np.load(data_path("data_templates/head.npz"), allow_pickle=False) as archive:
         z = {name: archive[name] for name in archive.files}
     if axes is not None:
-        z["identity"] = _recombined(z["identity"], axes)
+        z["identity"] = recombined(z["identity"], axes)
         for name in ("eye_centre_modes", "eye_radius_modes"):
-            z[name] = np.stack([_recombined(eye, axes) for eye in z[name]])
+            z[name] = np.stack([recombined(eye, axes) for eye in z[name]])
+    if more is not None:
+        z["identity"] = np.concatenate([z["identity"], more.cage])
+        z["eye_centre_modes"] = np.concatenate([z["eye_centre_modes"], more.eye_centres], axis=1)
+        z["eye_radius_modes"] = np.concatenate([z["eye_radius_modes"], more.eye_radii], axis=1)
     S, quads = catmull_clark(z["quads"].astype(np.int64), len(z["mean"]))
     uv, uv_quads = _refined_uv(z["uv"].astype(float), z["uv_quads"].astype(np.int64))
     named = [row["name"] for row in _table("expressions.csv")]
@@ -68,7 +93,7 @@ def _table(name: str) -> list[dict[str, str]]:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
-def _recombined(modes: np.ndarray, axes: np.ndarray) -> np.ndarray:
+def recombined(modes: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """Modes (c, ...) float16 along axes (80, c) of modes (80, ...).
 
     Refining numbers of so few digits is exact, so mirrored vertices mirror each other to the last bit.

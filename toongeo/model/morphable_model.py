@@ -14,6 +14,7 @@ from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only, restored
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.parts import INNER_PARTS
+from toongeo.model.check_model import check_model
 from toongeo.model.eyeball_template import EyeballTemplate
 from toongeo.model.face_prior import FacePrior
 from toongeo.model.regions import REGIONS
@@ -73,7 +74,8 @@ class MorphableModel:
     Raises
     ------
     ValueError
-        If the mean of the prior has another length than there are identity modes, or a landmark is no vertex.
+        If the mean of the prior has another length than there are identity modes, an array has another shape than it
+        should, numbers that are not finite or indices out of range, or the sizes of two do not fit together.
     """
 
     mean: np.ndarray
@@ -102,9 +104,7 @@ class MorphableModel:
         if self.prior is not None and self.prior.mean.shape != (len(self.identity),):
             expected = (len(self.identity),)
             raise ValueError(f"prior: expected a mean of shape {expected}, got {self.prior.mean.shape}")
-        if self.landmarks.size and not 0 <= self.landmarks.min() <= self.landmarks.max() < len(self.mean):
-            got = f"{self.landmarks.min()} to {self.landmarks.max()}"
-            raise ValueError(f"landmarks: expected vertices in 0..{len(self.mean) - 1}, got {got}")
+        check_model(self)
         for name, value in stand_ins(self).items():
             object.__setattr__(self, name, value)
         read_only(self, *(part.name for part in fields(self) if part.name not in _OBJECTS))
@@ -166,6 +166,14 @@ class MorphableModel:
         if self.skinning is None:
             raise ValueError("model: expected one with joints, got one whose expressions are all linear")
         return self.skinning.posed(self.vertices(identity, expression), pose)
+
+    @property
+    def principal_modes(self) -> np.ndarray:
+        """Identity modes (c, n, 3), mm, of unit variance between people: random faces are drawn from them.
+
+        A mode that leads from a mean that they can make to one that they cannot is not among them.
+        """
+        return self.identity if self.prior is None else self.identity[: self.prior.n_principal]
 
     def region(self, name: str) -> np.ndarray:
         """Mask (n,) of a named region.

@@ -51,6 +51,9 @@ from toongeo.pipeline.rig import fit_mouth as fit_mouth
 from toongeo.pipeline.rig import keep_lids_outside as keep_lids_outside
 from toongeo.pipeline.rig import neutral_face as neutral_face
 from toongeo.pipeline.rig import rig_mesh as rig_mesh
+from toongeo.pipeline.stylize import STYLES as STYLES
+from toongeo.pipeline.stylize import Style as Style
+from toongeo.pipeline.stylize import stylize as stylize
 from toongeo.pipeline.texture import Iris as Iris
 from toongeo.pipeline.texture import aim_eyes as aim_eyes
 from toongeo.pipeline.texture import bake_eyes as bake_eyes

@@ -15,5 +15,8 @@ from toongeo.protocols.faces import FittedFace as FittedFace
 from toongeo.protocols.faces import HairModeler as HairModeler
 from toongeo.protocols.landmarks import LandmarkDetection as LandmarkDetection
 from toongeo.protocols.landmarks import LandmarkDetector as LandmarkDetector
+from toongeo.protocols.stylizers import PictureWarp as PictureWarp
+from toongeo.protocols.stylizers import Stylized as Stylized
+from toongeo.protocols.stylizers import Stylizer as Stylizer
 from toongeo.protocols.textures import TextureGenerator as TextureGenerator
 from toongeo.protocols.textures import TextureGeometry as TextureGeometry

@@ -3,6 +3,7 @@
 from toongeo.colour.srgb import linear_to_srgb as linear_to_srgb
 from toongeo.colour.srgb import srgb_to_linear as srgb_to_linear
 from toongeo.render.camera import ScaledOrthographicCamera as ScaledOrthographicCamera
+from toongeo.render.frame_renderer import FrameRenderer as FrameRenderer
 from toongeo.render.interpolate import interpolate as interpolate
 from toongeo.render.perspective_camera import PerspectiveCamera as PerspectiveCamera
 from toongeo.render.rasterize import Fragments as Fragments

@@ -56,7 +56,15 @@ class Fragments:
         return self.face_ids >= 0
 
 
-def rasterize(points_px: ArrayLike, F: ArrayLike, height: int, width: int, *, cull_back: bool = False) -> Fragments:
+def rasterize(
+    points_px: ArrayLike,
+    F: ArrayLike,
+    height: int,
+    width: int,
+    *,
+    cull_back: bool = False,
+    only: NDArray[np.bool_] | None = None,
+) -> Fragments:
     """Nearest face and barycentric coordinates at every pixel centre.
 
     Coverage and the z-buffer are those of OpenCV 5's software rasterizer (float32; a pixel centre within
@@ -76,6 +84,8 @@ def rasterize(points_px: ArrayLike, F: ArrayLike, height: int, width: int, *, cu
         Size of the image in pixels.
     cull_back : bool
         Leave out faces whose corners run clockwise as seen in the image.
+    only : (height, width) bool, optional
+        Pixels that are asked for; the others are as if no face were there, which takes less time.
 
     Returns
     -------
@@ -107,6 +117,10 @@ def rasterize(points_px: ArrayLike, F: ArrayLike, height: int, width: int, *, cu
         rows = opencv_nearest(points, faces[drawn], growth, height, width)
     else:
         rows = z_buffer(points, faces[drawn], affine, growth, height, width)
+    if only is not None:
+        if only.shape != (height, width):
+            raise ValueError(f"only: expected shape ({height}, {width}), got {only.shape}")
+        rows = np.where(only, rows, np.int32(-1))
     barycentrics = _barycentrics(affine, rows)
     face_ids = np.append(drawn, -1).astype(np.int32)[rows]  # row -1 is the last one
     return Fragments(face_ids, barycentrics)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from toongeo.colour.srgb import linear_to_srgb, srgb_to_linear
 from toongeo.protocols import Camera
 from toongeo.render.paint_table import PaintTable, Shading, paint_table
+from toongeo.render.picture_size import picture_size
 from toongeo.render.rasterize import Fragments, rasterize
 from toongeo.render.studio_light import studio_light
 from toongeo.render.surface import Surface
@@ -77,11 +78,9 @@ def render_mesh(
     ((32, 32, 3), np.int64(0), np.int64(1))
     """
     parts = (surfaces,) if isinstance(surfaces, Surface) else tuple(surfaces)
-    height, width = (size, size) if isinstance(size, (int, np.integer)) else size
-    if height < 1 or width < 1:
-        raise ValueError(f"size: expected positive (height, width) in px, got {size!r}")
     if supersample < 1 or int(supersample) != supersample:
         raise ValueError(f"supersample: expected an integer >= 1, got {supersample!r}")
+    height, width = picture_size(size, int(supersample))
     if shading not in get_args(Shading):
         raise ValueError(f"shading: expected one of {get_args(Shading)}, got {shading!r}")
     linear = _linear_background(background, height, width)

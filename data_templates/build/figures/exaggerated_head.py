@@ -33,7 +33,8 @@ def exaggerated_head(rng: np.random.Generator) -> Head:
     moves[space.vertices] = skin
     inside, nearest, weights = _followers()
     moves[inside] = np.einsum("nk,nkc->nc", weights, skin[nearest])
-    base = model.vertices(model.prior.mean * between(rng, 0, 1), random_expression(rng, "caricature"))
+    likely = np.where(np.arange(len(model.identity)) < model.prior.n_principal, model.prior.mean, 0)
+    base = model.vertices(likely * between(rng, 0, 1), random_expression(rng, "caricature"))
     eyeballs = [_moved(*eye.placed(model.prior.mean * 0), model.mean[space.vertices], skin) for eye in model.eyes]
     return finished_head(rng, "caricature", base + moves, eyeballs)
 

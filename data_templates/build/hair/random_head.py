@@ -88,7 +88,11 @@ def random_head(rng: Rng, model: MorphableModel, side: int, exaggeration: float)
 
 
 def _shape(rng: Rng, model: MorphableModel, exaggeration: float) -> NDArray[np.float64]:
-    identity = model.prior.mean * rng.uniform(0, 1) + rng.normal(0, 0.8 + exaggeration, len(model.identity))
+    principal = model.prior.n_principal
+    identity = np.zeros(len(model.identity))
+    identity[:principal] = model.prior.mean[:principal] * rng.uniform(0, 1) + rng.normal(
+        0, 0.8 + exaggeration, principal
+    )
     weights = np.zeros(len(model.expression))
     weights[rng.choice(model.n_named, 4, replace=False)] = rng.uniform(0, 0.7, 4) * (rng.random(4) < 0.5)
     V = model.mean + np.tensordot(identity, model.identity, 1) + np.tensordot(weights, model.expression, 1)

@@ -37,7 +37,10 @@ class Head:
 def random_head(rng: np.random.Generator, kind: str) -> Head:
     """A head of this kind."""
     model = template().model
-    identity = model.prior.mean * between(rng, 0, 1) + rng.normal(size=80) * between(rng, *_SPREAD[kind])
+    principal = model.prior.n_principal
+    mean = model.prior.mean[:principal] * between(rng, 0, 1)
+    identity = np.zeros(len(model.identity))
+    identity[:principal] = mean + rng.normal(size=principal) * between(rng, *_SPREAD[kind])
     identity[30:] *= between(rng, 0.3, 1)  # the small modes are noise when they are exaggerated
     vertices = model.vertices(identity, random_expression(rng, kind))
     return finished_head(rng, kind, vertices, [eye.placed(identity) for eye in model.eyes])

@@ -87,7 +87,8 @@ def test_caricatured_modes_are_the_components_of_their_shapes(model):
     assert len(components) == 5  # six shapes about their mean
     gram = components @ components.T
     np.testing.assert_allclose(gram, np.diag(np.diag(gram)), atol=1e-3 * gram.max())
-    first = model.vertices(np.random.default_rng(1).standard_normal((3, len(model.identity)))[0])
+    drawn = np.random.default_rng(1).standard_normal((3, len(model.principal_modes)))[0]
+    first = model.vertices(np.append(drawn, np.zeros(len(model.identity) - len(drawn))))
     left = (first - mean).ravel()
     inside = np.linalg.lstsq(components.T, left, rcond=None)[0] @ components
     assert np.abs(inside - left).max() < 0.05

@@ -243,3 +243,52 @@ def test_no_such_file(tmp_path):
         read_image(tmp_path / "face.png")
     with pytest.raises(OSError, match=str(tmp_path)):
         read_image(tmp_path)
+
+
+def blocks():
+    """A picture of coloured squares that JPEG keeps."""
+    squares = np.random.default_rng(4).integers(0, 256, (20, 25, 3), dtype=np.uint8)
+    return np.repeat(np.repeat(squares, 8, axis=0), 8, axis=1)
+
+
+@pytest.mark.parametrize("progressive", [False, True])
+def test_a_jpeg_without_its_end_mark_is_read_with_a_warning(tmp_path, progressive):
+    stream = io.BytesIO()
+    Image.fromarray(blocks()).save(stream, "JPEG", quality=90, progressive=progressive)
+    whole, path = stream.getvalue(), tmp_path / "a.jpg"
+    path.write_bytes(whole)
+    expected = read_image(path)
+    for lost in (1, 2):
+        path.write_bytes(whole[:-lost])
+        with pytest.warns(UserWarning, match=r"path: .*a\.jpg is a JPEG without its end mark; all its pixels"):
+            np.testing.assert_array_equal(read_image(path), expected)
+    for kept in (len(whole) - 40, len(whole) // 2, len(whole) // 4):
+        path.write_bytes(whole[:kept])
+        with pytest.raises(ValueError, match=r"path: expected a picture .*a\.jpg is damaged"):
+            read_image(path)
+
+
+def test_what_stands_behind_the_end_mark_of_a_jpeg_is_left_alone(tmp_path):
+    stream = io.BytesIO()
+    Image.fromarray(blocks()).save(stream, "JPEG", quality=90)
+    (tmp_path / "a.jpg").write_bytes(stream.getvalue())
+    (tmp_path / "b.jpg").write_bytes(stream.getvalue() + b"made by a telephone")
+    np.testing.assert_array_equal(read_image(tmp_path / "a.jpg"), read_image(tmp_path / "b.jpg"))
+
+
+@pytest.mark.parametrize("wrong", [0, -1, 2.5, True, None, "many"])
+def test_max_pixels_that_is_no_count(tmp_path, rgb, wrong):
+    Image.fromarray(rgb).save(tmp_path / "a.png")
+    with pytest.raises(ValueError, match="max_pixels: expected an integer > 0"):
+        read_image(tmp_path / "a.png", max_pixels=wrong)
+
+
+@pytest.mark.parametrize("mode", ["RGBA", "LA", "P", "L", "1", "I;16"])
+def test_strips_of_a_picture_are_the_whole(tmp_path, monkeypatch, mode):
+    stored = np.random.default_rng(5).integers(0, 255, (37, 23, 4), dtype=np.uint8)
+    image = Image.fromarray(stored)
+    image = Image.fromarray(stored[..., 0].astype(np.uint16) * 200) if mode == "I;16" else image.convert(mode)
+    image.save(tmp_path / "a.png", **({"transparency": 3} if mode in ("P", "I;16") else {}))
+    whole = read_image(tmp_path / "a.png")
+    monkeypatch.setattr("toongeo.io.readers.read_image._STRIP", 23 * 5)
+    np.testing.assert_array_equal(read_image(tmp_path / "a.png"), whole)

@@ -1,5 +1,7 @@
 """OBJ: floats come back exactly and in their order."""
 
+import os
+
 import numpy as np
 import pytest
 import trimesh
@@ -199,3 +201,22 @@ def test_one_huge_polygon_among_many_takes_no_memory(tmp_path):
     path.write_text("v 0 0 0\n" + "f 1 1 1\n" * 20_000 + "f" + " 1" * 5_000 + "\n")
     with pytest.raises(ValueError, match="line 20002 .*a polygon of 5000 corners among 20001 polygons"):
         read_obj(path)
+
+
+def test_one_large_polygon_among_many_small_ones_takes_no_table_of_both(tmp_path):
+    head = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
+    (tmp_path / "a.obj").write_text(head + "f " + "1 2 3 " * 2000 + "\n" + "f 1 2 3\n" * 1000)
+    with pytest.raises(ValueError, match="line 4 of .*a polygon of 6000 corners among 1001 polygons"):
+        read_obj(tmp_path / "a.obj")
+    (tmp_path / "b.obj").write_text(head + "f " + "1 2 3 " * 2000 + "\n" + "f 1 2 3\n" * 600)
+    assert len(read_obj(tmp_path / "b.obj").triangles()[0]) == 5998 + 600
+
+
+def test_pipes_and_large_files_are_refused(tmp_path, monkeypatch):
+    os.mkfifo(tmp_path / "a.obj")
+    with pytest.raises(ValueError, match=r"path: expected a file, but .*a\.obj is a device or a pipe"):
+        read_obj(tmp_path / "a.obj")
+    monkeypatch.setattr("toongeo.io.readers.read_obj._MOST_MB", 0)
+    (tmp_path / "b.obj").write_text("v 0 0 0\n")
+    with pytest.raises(ValueError, match=r"path: expected a file of at most 0 MB, but .*b\.obj is larger"):
+        read_obj(tmp_path / "b.obj")

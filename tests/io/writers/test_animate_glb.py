@@ -5,8 +5,9 @@ import struct
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from toongeo.io import animate_glb, morph_targets, read_glb, write_glb
+from toongeo.io import animate_glb, head_bone, morph_targets, read_glb, write_glb
 
 
 @pytest.fixture
@@ -50,6 +51,43 @@ def test_the_targets_move_and_the_rest_stays(tmp_path, foreign):
         np.testing.assert_array_equal(after.accessors[sampler["input"]], times.astype(np.float32))
         np.testing.assert_array_equal(values[:, names.index("jawOpen")], jaw.astype(np.float32))
         assert np.count_nonzero(values) == 2
+
+
+def test_the_bone_of_the_head_turns_in_the_world(tmp_path, scene, foreign):
+    """Whatever way it and those above it are turned themselves."""
+    write_glb(tmp_path / "body.glb", scene, body="mixamo")
+    content = (tmp_path / "body.glb").read_bytes()
+    size = struct.unpack_from("<I", content, 12)[0]
+    document, rest = json.loads(content[20 : 20 + size]), content[20 + size :]
+    numbers = {node["name"]: k for k, node in enumerate(document["nodes"])}
+    above = {child: k for k, node in enumerate(document["nodes"]) for child in node.get("children", ())}
+    for name, turn in (("Spine", [0.5, 0.5, 0.5, 0.5]), ("Head", [0.0, 0.6, 0.0, 0.8])):
+        document["nodes"][numbers[name]]["rotation"] = turn
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sII", b"glTF", 2, 20 + len(text) + len(rest))
+    (tmp_path / "body.glb").write_bytes(head + struct.pack("<I4s", len(text), b"JSON") + text + rest)
+    turns = Rotation.from_euler("YXZ", [[0, 0, 0], [0.5, 0.2, -0.1]])
+    times = np.array([0.0, 1.0])
+    animate_glb(tmp_path / "body.glb", tmp_path / "out.glb", times, {"jawOpen": times}, turns=turns.as_quat())
+    after = read_glb(tmp_path / "out.glb")
+    clip = after.json["animations"][0]
+    (channel,) = (entry for entry in clip["channels"] if entry["target"]["path"] == "rotation")
+    assert channel["target"]["node"] == numbers["Head"] == head_bone(after.json)
+    local = after.accessors[clip["samplers"][channel["sampler"]]["output"]]
+
+    def world(turn):
+        number, found = numbers["Head"], Rotation.from_quat(turn)
+        while number in above:
+            number = above[number]
+            found = Rotation.from_quat(document["nodes"][number].get("rotation", [0, 0, 0, 1])) * found
+        return found
+
+    rest = world([0.0, 0.6, 0.0, 0.8])
+    for turn, wanted in zip(local, turns, strict=True):
+        np.testing.assert_allclose((world(turn) * rest.inv()).as_matrix(), wanted.as_matrix(), atol=1e-6)
+    with pytest.raises(ValueError, match=r"turns: expected \(2, 4\) and a bone named head, got \(2, 4\), node None"):
+        animate_glb(foreign, tmp_path / "no.glb", times, {"jawOpen": times}, turns=turns.as_quat())
 
 
 def test_it_is_valid(tmp_path, foreign, node):

@@ -284,7 +284,7 @@ def test_a_file_cut_anywhere_is_refused(contents, tmp_path):
 def test_without_h5py_its_extra_is_named(contents, monkeypatch):
     path = contents("bfm2017")
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
-    with pytest.raises(ImportError, match=r"pip install toongeo\[models\]"):
+    with pytest.raises(ImportError, match="needs the extra models: pip install"):
         load_model(path)
 
 

@@ -76,7 +76,9 @@ def test_the_pose_of_a_stranger_is_found(model, annotated, random_face, yaw):
     found = [fit_3dmm(None, annotated(model, camera, *random_face(seed))).camera for seed in range(8)]
     assert np.abs([c.yaw - camera.yaw for c in found]).mean() < 4
     assert np.abs([c.roll - camera.roll for c in found]).mean() < 2
-    assert np.abs([c.scale / camera.scale - 1 for c in found]).mean() < 0.04
+    assert (
+        np.abs([c.scale / camera.scale - 1 for c in found]).mean() < 0.05
+    )  # the likeliest face is larger than the mean they are drawn about
 
 
 def test_a_stronger_prior_is_a_smaller_face_and_a_larger_error(model, face):
@@ -91,7 +93,7 @@ def test_the_minimum_is_one(model, face):
     apart = replace(problem.search, opposites=problem.search.opposites[:0])  # these are parted after a pass
     problem = replace(problem, search=apart)
     fit = problem.solve("LD_LBFGS")
-    placed = visible_landmarks(problem.basis, problem.search.start[:144], problem.frame.rotation0)
+    placed = visible_landmarks(problem.basis, problem.search.start[:145], problem.frame.rotation0)
     loss = problem.loss(placed, problem.options.prior_weight, problem.target.robust_weight)
     x = np.zeros(problem.unknowns.size)
     x[problem.unknowns.shape] = fit.coefficients
@@ -247,7 +249,7 @@ def test_the_reported_error_is_that_of_the_projected_vertices(face):
 
 def test_the_result(model, face):
     fit = fit_3dmm(np.zeros((600, 600, 3), np.uint8), face)
-    assert (fit.identity.shape, fit.expression.shape, fit.landmark_vertices.shape) == ((80,), (64,), (68,))
+    assert (fit.identity.shape, fit.expression.shape, fit.landmark_vertices.shape) == ((81,), (64,), (68,))
     assert fit.model is model
     assert fit.faces is model.faces
     assert fit.albedo is None and fit.light is None

@@ -37,6 +37,7 @@ def error_mm(model, V, truth):
 
 def test_the_answer_itself(artist, annotated, random_face):
     identity, expression = random_face(3)
+    identity = identity[: len(artist.identity)]
     camera = ScaledOrthographicCamera.look(yaw=25, pitch=-5, roll=7)
     points = annotated(artist, camera, identity, expression)
     answer = Coefficients(identity=identity, expression=expression, albedo=np.ones(9), light=np.ones((3, 9)))
@@ -64,7 +65,7 @@ def test_where_the_fit_starts_does_not_change_where_it_ends(model, points, ridge
     for regressor in (
         ridge,
         lambda *_: Coefficients(pose=ScaledOrthographicCamera.look(yaw=12, size=480)),
-        lambda *_: Coefficients(identity=np.full(80, 0.3)),
+        lambda *_: Coefficients(identity=np.full(81, 0.3)),
         lambda *_: Coefficients(),
     ):
         found = fit_3dmm(None, points, regressor=regressor, solver=SolverOptions(tolerance=1e-11, max_passes=8))
@@ -94,10 +95,10 @@ def test_coefficients_are_read_only_copies():
 
 
 def test_bad_regressors(points):
-    with pytest.raises(ValueError, match=r"regressor: expected identity of shape \(80,\), got \(79,\)"):
+    with pytest.raises(ValueError, match=r"regressor: expected identity of shape \(81,\), got \(79,\)"):
         fit_3dmm(None, points, regressor=lambda *_: Coefficients(identity=np.zeros(79)))
     with pytest.raises(ValueError, match="regressor: expected one that returns Coefficients, got ndarray"):
-        fit_3dmm(None, points, regressor=lambda *_: np.zeros(80))
+        fit_3dmm(None, points, regressor=lambda *_: np.zeros(81))
     with pytest.raises(ValueError, match="expression: expected finite numbers or None"):
         Coefficients(expression=np.array([np.nan]))
     with pytest.raises(ValueError, match="refine: expected a regressor whose answer is not to be refined"):

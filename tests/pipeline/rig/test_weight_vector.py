@@ -24,3 +24,11 @@ def test_bad_weights_are_refused():
         weight_vector({"jawOpen": "1"}, NAMES)
     with pytest.raises(ValueError, match="weights: expected finite values"):
         weight_vector({"jawOpen": np.nan}, NAMES)
+
+
+@pytest.mark.parametrize("weight", [10**400, 1e300, -1e39, 1.1e6])
+def test_weights_beyond_what_float32_can_show_are_refused(weight):
+    with pytest.raises(ValueError, match="weights: expected (values up to 1e\\+06|a number for a, got one beyond all)"):
+        weight_vector({"a": weight}, ["a"])
+    with pytest.raises(ValueError, match="weights: expected"):
+        weight_vector([weight], ["a"])

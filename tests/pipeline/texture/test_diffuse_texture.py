@@ -152,3 +152,12 @@ def test_bad_input_is_named(change, message):
     arguments = {"img": np.zeros((4, 5)), "mask": np.eye(4, 5, dtype=bool)} | change
     with pytest.raises(ValueError, match=message):
         diffuse_texture(**arguments)
+
+
+@pytest.mark.parametrize("most", [1.7e308, 1e300, -1.7e308])
+def test_the_largest_floats_stay_finite(options, most):
+    known = np.eye(6, dtype=bool)
+    found = diffuse_texture(np.full((6, 6), most), known, **options)
+    np.testing.assert_allclose(found, most, rtol=1e-12)
+    small = np.finfo(np.float32).max
+    assert (diffuse_texture(np.full((4, 4), small), np.eye(4, dtype=bool), **options) == small).all()

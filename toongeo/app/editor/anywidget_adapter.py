@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from toongeo._extras import missing_extra
 from toongeo.io.page_html import PAGE
 
 __all__ = ["notebook_widget"]
@@ -29,7 +30,7 @@ def notebook_widget(settings: Mapping[str, Any], heard: Callable[[Any, Any], Non
         import anywidget
         import traitlets
     except ImportError as error:
-        raise ImportError('LandmarkEditor needs the extra notebook: pip install "toongeo[notebook]"') from error
+        raise ImportError(missing_extra("LandmarkEditor", "notebook")) from error
 
     class EditorWidget(anywidget.AnyWidget):
         _esm = (PAGE / "editor.js").read_text(encoding="utf-8")

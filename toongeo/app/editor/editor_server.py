@@ -6,6 +6,7 @@ import json
 import os
 import secrets
 import sys
+import threading
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
@@ -13,12 +14,13 @@ from urllib.parse import parse_qs, urlsplit
 
 from toongeo.app.editor.editor_session import EditorSession
 from toongeo.app.editor.editor_settings import editor_settings
-from toongeo.app.loopback import HOST, refusal
+from toongeo.app.loopback import HOST, check_port, refusal
 from toongeo.io.editor_page import editor_page
 
 __all__ = ["LARGEST", "EditorServer"]
 
 LARGEST = 65_536  # bytes of a question; 68 points with all their digits take 3,000
+_MOST_PEERS = 32  # connections at once; a browser opens six
 _PATIENCE = 30.0  # s until a connection that says nothing is closed
 _SCHEME = "Bearer "
 
@@ -45,12 +47,28 @@ class EditorServer(ThreadingHTTPServer):
     allow_reuse_address = os.name == "posix"  # elsewhere it would let two servers share a port
 
     def __init__(self, session: EditorSession, port: int = 0) -> None:
+        check_port(port)
+        self._free = threading.BoundedSemaphore(_MOST_PEERS)
         self.session = session
         self.token = secrets.token_urlsafe(24)
         settings = editor_settings() | {"token": self.token, "detector": session.detector is not None}
         self.page, self.policy = editor_page(settings, title="Landmarks")
         super().__init__((HOST, port), _Handler)
         self.port = int(self.server_address[1])
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """In a thread of its own, if there are not too many."""
+        if self._free.acquire(blocking=False):
+            super().process_request(request, client_address)
+        else:
+            self.shutdown_request(request)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Until the connection ends."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Browsers that hang up are no error."""

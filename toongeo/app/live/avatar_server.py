@@ -13,12 +13,16 @@ from urllib.parse import parse_qs, urlsplit
 
 from toongeo.app.glb_page import glb_page, read_avatar_glb, target_names
 from toongeo.app.live.read_message import read_message
-from toongeo.app.loopback import HOST, refusal
+from toongeo.app.loopback import HOST, check_port, refusal
 from toongeo.driving.websockets_adapter import load_websockets
 
 __all__ = ["AvatarServer", "LARGEST", "PAGE", "acknowledged"]
 
 LARGEST = 16_384  # bytes of a message; 54 weights with their names take 2,000
+_MOST_PEERS = 32  # pages and sources together
+_MOST_WAITING = 2**18  # bytes that a peer has not read, some hundred messages: it will never catch up
+_MOST_QUEUED = 4  # messages of a peer that wait to be read; then its socket is not read either
+_HURRY = 5.0  # s that a connection may take to say what it wants
 _PATIENCE = 1.0  # s that a page has to say goodbye when the server ends
 PAGE, _SOURCE = "/page", "/source"
 
@@ -29,7 +33,8 @@ class AvatarServer:
     Whoever connects must know ``token``, which is new for each server. A source sends ``{"jawOpen": 0.5}`` or an array
     of weights in the order of ``names``; every page applies it and acknowledges, and sources are told so by
     ``{"applied": n}`` when the first page has applied n more messages. What is not understood is answered with
-    ``{"error": "..."}`` and not passed on.
+    ``{"error": "..."}`` and not passed on. Who does not read what is sent to him is dropped, and there are at most 32
+    connections.
 
     Parameters
     ----------
@@ -45,6 +50,7 @@ class AvatarServer:
     """
 
     def __init__(self, avatar: Path, port: int = 0) -> None:
+        check_port(port)
         self._glb, document = read_avatar_glb(avatar)
         self.names = target_names(document)
         self.token = secrets.token_urlsafe(24)
@@ -74,6 +80,8 @@ class AvatarServer:
             self.port,
             process_request=self._answer,
             max_size=LARGEST,
+            max_queue=_MOST_QUEUED,
+            open_timeout=_HURRY,
             close_timeout=_PATIENCE,
             compression=None,
         )
@@ -92,7 +100,9 @@ class AvatarServer:
             return connection.respond(*refusal)
         path = urlsplit(request.path).path
         if path in (PAGE, _SOURCE):
-            return None
+            if len(self._pages) + len(self._sources) < _MOST_PEERS:
+                return None
+            return connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, "too many are connected\n")
         if path != "/":
             return connection.respond(HTTPStatus.NOT_FOUND, "there is nothing here\n")
         response = connection.respond(HTTPStatus.OK, "")
@@ -154,6 +164,9 @@ class AvatarServer:
         self._tell(self._pages, weights)
 
     def _tell(self, connections: list[Any], content: dict[str, Any]) -> None:
+        for connection in connections:
+            if connection.transport.get_write_buffer_size() > _MOST_WAITING:
+                connection.transport.abort()  # a close would wait behind all that was not read
         load_websockets().broadcast(connections, json.dumps(content))
 
 

@@ -3,8 +3,6 @@
 import json
 from collections.abc import Sequence
 
-import numpy as np
-
 from toongeo.pipeline.rig.weight_vector import weight_vector
 
 __all__ = ["read_message"]
@@ -27,11 +25,11 @@ def read_message(message: str | bytes, names: Sequence[str]) -> dict[str, float]
     """
     try:
         content = json.loads(message)
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError):
+    except (ValueError, RecursionError):  # also of numbers with thousands of digits
         raise ValueError("message: expected JSON") from None
     if isinstance(content, dict):
         vector = weight_vector(content, names)
         return {name: float(vector[names.index(name)]) for name in content}
     if not (isinstance(content, list) and all(type(value) in (int, float) for value in content)):
         raise ValueError("message: expected an object of weights, or an array of numbers")
-    return dict(zip(names, weight_vector(np.array(content, float), names).tolist(), strict=True))
+    return dict(zip(names, weight_vector(content, names).tolist(), strict=True))

@@ -55,10 +55,9 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _convert(options: argparse.Namespace) -> None:
-    from toongeo.app.check_output import check_output
     from toongeo.model import save_model
 
-    check_output(options.output, {"path": options.path})
+    _check_output(options, (".npz",))
     model = _loaded(options)
     model = model.with_rig_of() if options.rig else model
     model = model.with_contours() if options.contours else model
@@ -66,12 +65,20 @@ def _convert(options: argparse.Namespace) -> None:
     print(options.output)
 
 
-def _render(options: argparse.Namespace) -> None:
+def _check_output(options: argparse.Namespace, suffixes: tuple[str, ...]) -> None:
+    """Refuse an output before the work."""
     from toongeo.app.check_output import check_output
+
+    if options.output.suffix.lower() not in suffixes:
+        raise ValueError(f"output: expected {' or '.join(suffixes)}, got {options.output.name}")
+    check_output(options.output, {"path": options.path})
+
+
+def _render(options: argparse.Namespace) -> None:
     from toongeo.app.models.model_sheet import model_sheet
     from toongeo.io import write_image
 
-    check_output(options.output, {"path": options.path})
+    _check_output(options, (".png", ".jpg"))
     write_image(options.output, model_sheet(_loaded(options)))
     print(options.output)
 

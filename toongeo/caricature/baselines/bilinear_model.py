@@ -54,9 +54,10 @@ class BilinearModel:
     @classmethod
     def from_model(cls, model: MorphableModel, rng: np.random.Generator, *, identities: int = 150) -> BilinearModel:
         """Of random identities and the named expressions (and none) of a model; the ranks of FaceWarehouse are kept."""
-        a = rng.standard_normal((identities, len(model.identity))).astype(np.float32)
+        modes = model.principal_modes
+        a = rng.standard_normal((identities, len(modes))).astype(np.float32)
         with one_thread():
-            A = (a @ model.identity.reshape(len(model.identity), -1)).reshape(identities, -1, 3)
+            A = (a @ modes.reshape(len(modes), -1)).reshape(identities, -1, 3)
         B = np.concatenate([np.zeros_like(model.expression[:1]), model.expression[: model.n_named]])
         left = _mode_vectors(model.mean, A, B, _RANKS[0])
         right = _mode_vectors(model.mean, B, A, _RANKS[1])

@@ -42,8 +42,9 @@ def caricatured_modes(
     modes : (c + e, n, 3) float32
         Components of one standard deviation, then the expressions of the model.
     """
-    drawn = rng.standard_normal((identities, len(model.identity)))
-    faces = [model.vertices(a) for a in drawn]
+    drawn = rng.standard_normal((identities, len(model.principal_modes)))
+    rest = np.zeros(len(model.identity) - drawn.shape[1])
+    faces = [model.vertices(np.append(a, rest)) for a in drawn]
     shapes = np.stack([caricature_surface(V, model.faces, gamma) for V in faces for gamma in gammas])
     mean = shapes.mean(axis=0)
     X = (shapes - mean).reshape(len(shapes), -1)

@@ -86,8 +86,9 @@ def _face_space(model: MorphableModel) -> FaceSpace:
     vertices = _skin(model)
     inside = np.isin(model.faces, vertices).all(axis=1)
     V = model.mean[vertices]
-    coefficients = np.random.default_rng(_SEED).standard_normal((_POOL, len(model.identity)))
-    modes = model.identity[:, vertices].reshape(len(model.identity), -1)
+    principal = model.principal_modes
+    coefficients = np.random.default_rng(_SEED).standard_normal((_POOL, len(principal)))
+    modes = principal[:, vertices].reshape(len(principal), -1)
     identities = _farthest((coefficients.astype(np.float32) @ modes).reshape(_POOL, -1, 3), IDENTITIES)
     expressions = _farthest(model.expression[: model.n_named, vertices], EXPRESSIONS)
     shapes = V + np.concatenate([identities, expressions]).astype(np.float64)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.io.atomic_write import atomic_write
+from toongeo.reading.read_npz import read_npz
 
 __all__ = ["read_arrays", "write_arrays"]
 
@@ -39,9 +40,9 @@ def read_arrays(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str,
     ValueError
         If it holds something else.
     """
-    with np.load(path, allow_pickle=False) as archive:
-        missing = [name for name in ("format", *names) if name not in archive]
-        if missing or archive["format"] != _FORMAT:
-            what = f"no {missing[0]!r}" if missing else f"format {archive['format']}"
-            raise ValueError(f"path: expected a deformation space of format {_FORMAT}, got {what} in {path}")
-        return {name: archive[name] for name in names}
+    expected = f"a deformation space of format {_FORMAT}"
+    arrays = read_npz(path, ("format", *names), expected=expected)
+    found = arrays.pop("format")
+    if found.shape != () or found != _FORMAT:
+        raise ValueError(f"path: expected {expected}, got format {np.array2string(found)[:40]} in {path}")
+    return arrays

@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from toongeo.arrays import Floats
+from toongeo.reading.check_file import check_file
 
 __all__ = ["Table", "read_table"]
 
+_MOST_MB = 128  # three hours of 61 columns at 60 frames a second; the cells of a text take ten times its size
 _DELIMITERS = (",", ";", "\t")
 _LOST = {"", "nan", "none", "null", "-"}  # how programs write that there is no number
 
@@ -104,6 +106,7 @@ def read_table(path: Path) -> Table:
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
     """The lines that are not empty, with their numbers."""
     try:
+        check_file(path, _MOST_MB)
         with open(path, encoding="utf-8-sig", newline="") as file:
             heading = file.readline()
             file.seek(0)

@@ -6,20 +6,16 @@ Constants were judged on the seven examples (``benchmarks/editing.py``).
 import cv2
 import numpy as np
 
-from toongeo.editing.texture.match_colours import to_lab
 from toongeo.geometry import adjacency
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.lid_rings import lid_rings
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline import Rig
-from toongeo.pipeline.texture.diffuse_over_mesh import diffuse_over_mesh
 from toongeo.render import uv_to_px
 
-__all__ = ["LINE", "lash_colour", "lash_lines", "lid_skin", "lid_zones"]
+__all__ = ["LINE", "lash_colour", "lash_lines", "lid_zones"]
 
 _STRETCHED = 1.2  # growth by which a blink spreads what is drawn beside the eye over the lid
-_AROUND = 7  # edges: width of the ring of skin from which a lid takes its colour
-_DARKER = 50.0  # percent of that skin, which lend nothing
 _SOFTEN = 3  # passes over the border of the lid
 LINE = 0.045  # of the eye's width: thickness of a lash line
 _FINE = 4  # subtexels a side for lines
@@ -44,31 +40,6 @@ def lid_zones(model: MorphableModel, rig: Rig) -> np.ndarray:
             zone = np.maximum(core * (region | (zone > 0.5)), (edges @ zone) / degree)
         zones[side] = zone
     return zones
-
-
-def lid_skin(model: MorphableModel, colours: np.ndarray, zones: np.ndarray) -> np.ndarray:
-    """Colours (n, 3) with those of the lids diffused from the skin around each eye.
-
-    Of that skin only the lighter part lends its colour: lines, brows and lashes, and what they darken, do not.
-    """
-    lightness = to_lab(colours)[:, 0]
-    triangles = model.faces[model.region("face")[model.faces].all(1)]
-    edges = adjacency(triangles, len(colours)).astype(float)
-    degree = np.maximum(np.asarray(edges.sum(1)).reshape(-1, 1), 1)
-    sockets = model.region("socket_left") | model.region("socket_right")
-    filled = np.array(colours, float)
-    for zone, name in zip(zones, SIDES, strict=True):
-        near = zone > 0
-        for _ in range(_AROUND):
-            near = near | (edges @ near > 0)
-        rims = np.isin(np.arange(len(zone)), lid_rings(model, name).vertices)
-        ring = near & (zone < 0.5) & ~rims & ~sockets & model.region("face")
-        known = ring & (lightness >= np.percentile(lightness[ring], _DARKER))
-        smooth, _ = diffuse_over_mesh(triangles, np.asarray(colours, float), known | ~near)
-        for _ in range(8 * _SOFTEN):
-            smooth = np.where((known | ~near)[:, None], smooth, (edges @ smooth) / degree)
-        filled[near] = smooth[near]
-    return np.asarray(filled, np.float32)
 
 
 def lash_lines(model: MorphableModel, V: np.ndarray, size: int) -> np.ndarray:

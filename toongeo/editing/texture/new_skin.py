@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from toongeo.editing.texture.lid_skin import LINE, lash_colour, lid_zones
-from toongeo.editing.texture.openings import lid_closing, lips_parted
+from toongeo.editing.texture.openings import jaw_moved, lid_closing, lips_parted
 from toongeo.editing.texture.picture_warp import Stroke
 from toongeo.geometry import vertex_normals
 from toongeo.model import MorphableModel
@@ -18,6 +18,7 @@ from toongeo.protocols import TextureGeometry
 __all__ = ["NewSkin"]
 
 _INWARD = 0.35  # cosine to the front below which a lip is its inner side
+_MOVED = 0.12  # of the mouth's width: a jaw that has moved so much shows another mouth than the picture
 _FAINT = 0.02  # less of a line is not seen
 
 
@@ -40,6 +41,8 @@ class NewSkin:
         How far a vertex shows new skin when the left, or right, eye closes.
     inner : (n,) bool
         Cavity, teeth and tongue.
+    lower : (n,) bool
+        Of these, what a jaw moves or shows.
     inner_lip : (n,) bool
         The side of the lips that is turned inwards.
     fresh : (n,) float32
@@ -60,6 +63,7 @@ class NewSkin:
         self.skin = model.region("face") & ~model.region("lips") & ~eyes & ~brows & (front > 0)
         self.zones = lid_zones(model, rig)
         self.inner = np.any([model.region(name) for name in MOUTH_PARTS], axis=0)
+        self.lower = self.inner & ~model.region("teeth_upper")
         self.inner_lip = model.region("lips") & (front < _INWARD) & ~self.inner
         self.fresh = (self.inner | self.inner_lip).astype(np.float32)
         self.lash_colour = lash_colour(model, self.colours, self.skin).astype(np.float32)
@@ -73,8 +77,10 @@ class NewSkin:
         """How far (n,) in [0, 1] a vertex shows what the source does not: skin of a closing lid, inner lips."""
         closing = lid_closing(self.model, geometry.source, geometry.target)
         parting = lips_parted(self.model, geometry.target) * (1 - lips_parted(self.model, geometry.source))
-        # Of teeth and tongue the picture may show some already.
-        return np.where(self.inner, 0, self.shown(closing, parting)).astype(np.float32)
+        # Of teeth and tongue the picture may show some already. That stays until the jaw has moved: stretched, or seen
+        # from another side, it would be scraps.
+        moved = float(np.clip(jaw_moved(self.model, geometry.source, geometry.target) / _MOVED, 0, 1))
+        return np.where(self.inner, moved * self.lower, self.shown(closing, parting)).astype(np.float32)
 
     def lash_strokes(self, geometry: TextureGeometry) -> list[Stroke]:
         """The line along each lid that closes, for pictures, where it should be as sharp as the drawing's own."""

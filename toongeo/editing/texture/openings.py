@@ -12,7 +12,7 @@ from toongeo.model.anatomy.lid_rings import lid_rings, opening_height
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.anatomy.rims import rim_path
 
-__all__ = ["inner_rims", "lid_closing", "lips_parted"]
+__all__ = ["inner_rims", "jaw_moved", "lid_closing", "lips_parted"]
 
 _CLOSED = 0.75  # of its height: an opening that has lost so much shows the lid of a closed eye
 _TOUCHING, _PARTED = 0.035, 0.09  # of the mouth's width: lips so far apart still touch, and show the inside
@@ -35,6 +35,14 @@ def lips_parted(model: MorphableModel, V: np.ndarray) -> float:
     width = float(np.linalg.norm(V[upper[0]] - V[upper[-1]]))
     apart = opening_height(V[upper], V[lower]) / max(width, 1e-9)
     return float(np.clip((apart - _TOUCHING) / (_PARTED - _TOUCHING), 0, 1))
+
+
+def jaw_moved(model: MorphableModel, source: np.ndarray, target: np.ndarray) -> float:
+    """How far the lower teeth, or else the chin, have moved, in widths of the mouth."""
+    upper, _ = inner_rims(model)
+    width = float(np.linalg.norm(source[upper[0]] - source[upper[-1]]))
+    jaw = model.region("teeth_lower") if model.has("teeth_lower") else model.landmarks[8:9]
+    return float(np.linalg.norm((target - source)[jaw], axis=1).mean() / max(width, 1e-9))
 
 
 @lru_cache(maxsize=4)

@@ -16,6 +16,7 @@ from toongeo.render import rasterize
 __all__ = ["EYE", "MOUTH", "PictureMesh", "SKIN", "picture_mesh"]
 
 SKIN, MOUTH, EYE, _BEHIND = range(4)  # what a triangle shows; _BEHIND is skin that the picture does not show
+_EDGED = ("lips", "mouth_cavity", "teeth_upper", "teeth_lower", "tongue")
 _FINE = 1400  # px over the face's larger side at which visibility in the picture is decided
 _GRAZING = 0.12  # cosine to the viewer below which skin moves with what is beside it in the picture
 _STRETCH = (2.0, 4.0)  # growth of the projected area up to which a drawing is stretched, and from which it is not
@@ -32,6 +33,8 @@ class PictureMesh:
     faces : (m, 3) int64
     labels : (m,) uint8
         SKIN, MOUTH, EYE or _BEHIND.
+    parts : (m,) uint8
+        Skin 0, lips 1, inside of the mouth 2, upper teeth 3, lower teeth 4, tongue 5, eyes 6: what has edges.
     uv : (m, 3, 2) float32
         Texture coordinates of the corners, origin bottom left.
     seen : (n + e,) float32
@@ -46,6 +49,7 @@ class PictureMesh:
     vertices: np.ndarray
     faces: np.ndarray
     labels: np.ndarray
+    parts: np.ndarray
     uv: np.ndarray
     seen: np.ndarray
     soft: np.ndarray
@@ -55,7 +59,7 @@ class PictureMesh:
     __setstate__ = restored
 
     def __post_init__(self) -> None:
-        read_only(self, "vertices", "faces", "labels", "uv", "seen", "soft", "px")
+        read_only(self, "vertices", "faces", "labels", "parts", "uv", "seen", "soft", "px")
 
     def shares(self, px: np.ndarray) -> np.ndarray:
         """How far (n + e,) the picture is to be used with vertices moved to ``px``: not hidden, not stretched manyfold.
@@ -96,7 +100,10 @@ def picture_mesh(face: AlignedFace, eyes: Eyes) -> PictureMesh:
     hidden = (seen[F].min(1) == 0) | (cosine < _GRAZING)
     label[(label == SKIN) & hidden & ~soft[F].any(1)] = _BEHIND
     uv_corners = np.concatenate(uv).astype(np.float32)
-    return PictureMesh(V, F, label, uv_corners, seen, soft, px.astype(np.float32), face.camera)
+    parts = np.where(label == EYE, len(_EDGED) + 1, 0).astype(np.uint8)
+    for number, name in enumerate(_EDGED, 1):
+        parts[: len(faces[0])][model.region(name)[faces[0]].all(1)] = number
+    return PictureMesh(V, F, label, parts, uv_corners, seen, soft, px.astype(np.float32), face.camera)
 
 
 def _shown(px: np.ndarray, depth: np.ndarray, F: np.ndarray) -> np.ndarray:

@@ -105,7 +105,7 @@ class PictureWarp:
         blended += (1 - share[rows]) * (painted - blended)
         outer[rows] += free * (blended - outer[rows])
         if not inner.any():
-            return _softened(outer, carried)
+            return _softened(outer, _jumps(carried))
         rows = _bounds(inner, margin=2)
         motion = np.where(np.abs(motion) < _STILL, 0, motion)[rows]
         confidence = share[rows] * self._sampled(motion, self.interior, rows)[..., None]
@@ -117,7 +117,9 @@ class PictureWarp:
         within = spread_field(within, inner[rows])
         over = rim_cover(label, self.lines)[rows][..., None]
         outer[rows] = over * outer[rows] + (1 - over) * within
-        return _softened(outer, carried)
+        sharp = _jumps(carried)
+        sharp[rows] |= _edges(np.where(ids >= 0, self.mesh.parts[ids], 0)[rows], (label == MOUTH)[rows])
+        return _softened(outer, sharp)
 
     def stroked(self, image: np.ndarray, vertices: np.ndarray, strokes: Sequence[Stroke]) -> np.ndarray:
         """What :meth:`redrawn` gave, with lines drawn over it; they end in points."""
@@ -227,15 +229,30 @@ def picture_warp(img: np.ndarray, landmarks: np.ndarray, mesh: PictureMesh, pars
     return replace(warp, interior=interior.astype(np.float32))
 
 
-def _softened(image: np.ndarray, motion: np.ndarray) -> np.ndarray:
-    """An image (h, w, 3), changed in place: pixels are mixed with their neighbours where the motion jumps."""
-    edge = np.zeros(motion.shape[:2], np.float32)
-    edge[:, 1:] = _largest(motion[:, 1:] - motion[:, :-1])
-    edge[1:] = np.maximum(edge[1:], _largest(motion[1:] - motion[:-1]))
-    if edge.max() < _JUMP:
+def _jumps(motion: np.ndarray) -> np.ndarray:
+    """Where (h, w) a motion (h, w, 2) is another one than beside or above."""
+    edge = np.zeros(motion.shape[:2], bool)
+    edge[:, 1:] = _largest(motion[:, 1:] - motion[:, :-1]) > _JUMP
+    edge[1:] |= _largest(motion[1:] - motion[:-1]) > _JUMP
+    return edge
+
+
+def _edges(parts: np.ndarray, mouth: np.ndarray) -> np.ndarray:
+    """Where (h, w) one part ends and another begins, of which at least one is within the mouth."""
+    edge = np.zeros(parts.shape, bool)
+    for here, before in ((np.s_[:, 1:], np.s_[:, :-1]), (np.s_[1:], np.s_[:-1])):
+        other = (parts[here] != parts[before]) & (mouth[here] | mouth[before])
+        edge[here] |= other
+        edge[before] |= other
+    return edge
+
+
+def _softened(image: np.ndarray, edge: np.ndarray) -> np.ndarray:
+    """An image (h, w, 3), changed in place: pixels at an edge (h, w) are mixed with their neighbours."""
+    if not edge.any():
         return image
-    box = _bounds(edge > _JUMP, margin=2)
-    share = np.minimum(2 * cv2.GaussianBlur((edge[box] > _JUMP).astype(np.float32), (3, 3), 0), 1)[..., None]
+    box = _bounds(edge, margin=2)
+    share = np.minimum(2 * cv2.GaussianBlur(edge[box].astype(np.float32), (3, 3), 0), 1)[..., None]
     image[box] += share * (cv2.GaussianBlur(image[box], (3, 3), 0) - image[box])
     return image
 

@@ -14,9 +14,10 @@ from toongeo.io.gltf.glb_targets import add_targets
 from toongeo.io.scene import METRES, Scene, SceneAnimation, SceneMesh
 from toongeo.io.split_seams import split_seams
 
-__all__ = ["GlbOptions", "Picture", "add_scene"]
+__all__ = ["NECK", "NECK_REST", "GlbOptions", "Picture", "add_scene"]
 
 Picture = Literal["png", "jpeg"]
+NECK, NECK_REST = "neck", "neck_rest"  # nodes above the meshes of a head that turns
 
 _STEPS = 2048  # of the greatest coordinate, as which displacements are quantized: 0.09 mm of a head
 _BYTE = 127  # what 1 is as a normalized integer of 8 bits
@@ -36,7 +37,6 @@ class GlbOptions:
     quantize: bool = False
     picture: Picture = "png"
     sparse: bool = True
-    root: str | None = None
 
 
 def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
@@ -66,12 +66,17 @@ def add_scene(builder: GlbBuilder, scene: Scene, options: GlbOptions) -> None:
         if mesh.parent is not None:
             builder.json["nodes"][names.index(mesh.parent)].setdefault("children", []).append(child)
     nodes = [node for node, mesh in enumerate(scene.meshes) if mesh.parent is None]
-    if options.root is not None:
-        nodes = [builder.add("nodes", name=options.root, children=nodes)]
+    clip = scene.animation
+    if clip is not None and clip.neck is not None:
+        # The inner node takes back what the outer one moved: the meshes' own nodes are as without a neck.
+        place = np.asarray(clip.neck, np.float64) * METRES
+        rest = builder.add("nodes", name=NECK_REST, translation=(-place).tolist(), children=nodes)
+        nodes = [builder.add("nodes", name=NECK, translation=place.tolist(), children=[rest])]
+        names += [NECK_REST, NECK]
     builder.json["scenes"] = [{"nodes": nodes}]
     builder.json["scene"] = 0
-    if scene.animation is not None:
-        _animate(builder, scene.animation, names)
+    if clip is not None:
+        _animate(builder, clip, names)
 
 
 def _local(mesh: SceneMesh) -> NDArray[np.floating]:
@@ -167,6 +172,8 @@ def _animate(builder: GlbBuilder, animation: SceneAnimation, names: list[str]) -
     channels: list[dict[str, Any]] = []
     outputs = [(name, "weights", _f4(values).ravel()) for name, values in animation.weights.items()]
     outputs += [(name, "rotation", _f4(values)) for name, values in animation.rotations.items()]
+    if animation.turns is not None:
+        outputs.append((NECK, "rotation", _f4(animation.turns)))
     for name, path, values in outputs:
         channels.append({"sampler": len(samplers), "target": {"node": names.index(name), "path": path}})
         samplers.append({"input": times, "output": builder.accessor(values), "interpolation": "LINEAR"})

@@ -6,7 +6,6 @@ import os
 import re
 import struct
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,16 @@ from numpy.typing import NDArray
 
 from toongeo._brief_repr import brief_repr
 from toongeo.io.gltf.glb_builder import COLUMNS, COMPONENTS, NO_CHECKSUM, checksum_entry
+from toongeo.reading.check_file import file_bytes
+from toongeo.reading.promise import promised
 
 __all__ = ["GlbDocument", "read_glb"]
 
+_PACKED = {
+    "EXT_meshopt_compression": "meshoptimizer",
+    "KHR_meshopt_compression": "meshoptimizer",
+    "KHR_draco_mesh_compression": "Draco",
+}
 _MOST_BYTES = 1 << 29  # of all accessors together, which a few bytes of a damaged file could announce to be huge
 
 
@@ -47,6 +53,7 @@ class GlbDocument:
     __repr__ = brief_repr
 
 
+@promised("a GLB (glTF 2.0)")
 def read_glb(path: str | os.PathLike[str]) -> GlbDocument:
     """Read the JSON, every accessor and every embedded picture of a GLB.
 
@@ -68,17 +75,14 @@ def read_glb(path: str | os.PathLike[str]) -> GlbDocument:
         If it is no GLB of version 2, truncated, its accessors do not fit its buffer, or they are together beyond
         512 MB.
     """
-    content = Path(path).read_bytes()
-    try:
-        document, binary = _chunks(content)
-        views = [_view(binary, entry) for entry in document.get("bufferViews", [])]
-        _check_size(document.get("accessors", []))
-        accessors = tuple(_accessor(views, document, entry) for entry in document.get("accessors", []))
-        images = tuple(_image(views, entry) for entry in document.get("images", []))
-        attachment, intact = _attachment(content, document, views)
-    except (struct.error, LookupError, TypeError, AttributeError, ValueError, ArithmeticError, RecursionError) as error:
-        reason = f"{type(error).__name__}: {error}"[:200]
-        raise ValueError(f"path: expected a GLB (glTF 2.0), but {path} is damaged or none ({reason})") from error
+    content = file_bytes(path)
+    document, binary = _chunks(content)
+    _check_extensions(document, path)
+    views = [_view(binary, entry) for entry in document.get("bufferViews", [])]
+    _check_size(document.get("accessors", []))
+    accessors = tuple(_accessor(views, document, entry) for entry in document.get("accessors", []))
+    images = tuple(_image(views, entry) for entry in document.get("images", []))
+    attachment, intact = _attachment(content, document, views)
     return GlbDocument(document, accessors, images, attachment, intact)
 
 
@@ -96,7 +100,21 @@ def _chunks(content: bytes) -> tuple[dict[str, Any], bytes]:
             raise ValueError("a chunk is cut off")
         chunks.setdefault(kind, content[offset + 8 : offset + 8 + size])
         offset += 8 + size
-    return json.loads(chunks[b"JSON"]), chunks.get(b"BIN\0", b"")
+    document = json.loads(chunks[b"JSON"])
+    if not isinstance(document, dict):
+        raise ValueError(f"its JSON is {type(document).__name__}")
+    return document, chunks.get(b"BIN\0", b"")
+
+
+def _check_extensions(document: dict[str, Any], path: object) -> None:
+    """Refuse what is packed in a way that is not unpacked here, by its name."""
+    packed = {name: how for name, how in _PACKED.items() if name in document.get("extensionsRequired", ())}
+    if packed:
+        (name, how), *_ = packed.items()
+        raise ValueError(
+            f"path: expected a GLB whose arrays are plain, but those of {path} are packed by {how} ({name}); "
+            f"write it again without"
+        )
 
 
 def _view(binary: bytes, entry: dict[str, Any]) -> memoryview:

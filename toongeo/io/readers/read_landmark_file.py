@@ -13,6 +13,7 @@ from toongeo.io.landmarks.landmark_schemes import SCHEMES
 from toongeo.io.readers.landmarks.landmark_readers import raw_landmarks
 from toongeo.io.readers.landmarks.placed_landmarks import PictureSize, placed_landmarks
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks
+from toongeo.reading.promise import promised
 
 __all__ = ["LandmarkFile", "read_landmark_file"]
 
@@ -51,6 +52,7 @@ class LandmarkFile:
         read_only(self, "points")
 
 
+@promised("landmarks")
 def read_landmark_file(
     path: str | os.PathLike[str],
     *,

@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 
 from toongeo.io.readers.landmarks.landmark_readers import raw_landmarks
 from toongeo.io.readers.landmarks.placed_landmarks import PictureSize, placed_landmarks
+from toongeo.reading.promise import promised
 
 __all__ = ["read_landmark_frames"]
 
 
+@promised("landmarks")
 def read_landmark_frames(
     path: str | os.PathLike[str],
     *,

@@ -11,8 +11,11 @@ import numpy as np
 
 from toongeo.arrays import Bytes, Floats
 from toongeo.colour.srgb import linear_to_srgb
+from toongeo.io.readers.read_glb import read_glb
 from toongeo.io.readers.read_obj import read_obj
 from toongeo.io.scene import Scene, SceneMesh
+from toongeo.reading.check_file import file_bytes
+from toongeo.reading.promise import promised
 
 if TYPE_CHECKING:
     import trimesh
@@ -22,6 +25,7 @@ __all__ = ["MESH_SUFFIXES", "read_mesh"]
 MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off", ".glb")
 
 
+@promised("a mesh file")
 def read_mesh(path: str | os.PathLike[str]) -> Scene:
     """Read triangle meshes with their texture coordinates and textures, every vertex in its place in the file.
 
@@ -63,13 +67,13 @@ def read_mesh(path: str | os.PathLike[str]) -> Scene:
         raise ValueError(f"path: expected a name that ends in {', '.join(MESH_SUFFIXES)}, got {path}")
     if suffix == ".obj":
         return _obj_scene(path)
-    content = path.read_bytes()
+    content = file_bytes(path)
+    if suffix == ".glb":
+        read_glb(path)  # says what it is packed by, and bounds what it announces
     try:
         meshes = _meshes(content, suffix[1:])
-    # A damaged file makes the library's readers fail in many ways; a text that is none needs a package to be read.
-    except Exception as error:
-        reason = f"{type(error).__name__}: {error}"[:200]
-        raise ValueError(f"path: expected a mesh file, but {path} is damaged or none ({reason})") from error
+    except ImportError as error:  # a text that is no mesh is taken for a kind that needs a package
+        raise ValueError(f"path: expected a mesh file, but {path} is damaged or none ({error})") from error
     if not meshes:
         raise ValueError(f"path: expected a mesh with triangles, got none in {path}")
     return Scene(tuple(meshes))

@@ -13,12 +13,14 @@ from toongeo.io.readers.landmarks.json_points import json_number
 from toongeo.io.readers.landmarks.number_words import number, words
 from toongeo.io.readers.landmarks.read_ljson import is_ljson, ljson_groups
 from toongeo.io.readers.landmarks.read_picked_points import read_picked_points
+from toongeo.reading.promise import promised
 
 __all__ = ["read_mesh_landmarks"]
 
 _SUFFIXES = (".json", ".ljson", ".pp", ".txt", ".csv")
 
 
+@promised("landmarks of a mesh")
 def read_mesh_landmarks(path: str | os.PathLike[str], vertices: NDArray[np.floating]) -> NDArray[np.float64]:
     """Read 68 landmarks of a mesh in iBUG order.
 

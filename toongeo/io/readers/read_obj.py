@@ -1,19 +1,23 @@
 """A Wavefront OBJ file, its vertices in their order."""
 
+import io
 import os
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
 from toongeo.arrays import Floats, Integers
+from toongeo.reading.check_file import file_bytes
+from toongeo.reading.promise import promised
 
 __all__ = ["ObjData", "read_obj"]
 
-_MOST_CORNERS = 5 * 10**7  # of all polygons, each counted as the largest: 0.8 GB
+_MOST_MB = 256  # ten times a head of 300,000 vertices; the words of a text take many times its size
+# Corners of all polygons, each counted as the largest: of a table of them, and how many for each that is there.
+_FEW_CORNERS, _MOST_PADDING = 4 * 10**6, 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +67,7 @@ class ObjData:
         return self.faces[row, corner], self.uv_faces[row, corner], polygon
 
 
+@promised("a Wavefront OBJ")
 def read_obj(path: str | os.PathLike[str]) -> ObjData:
     """Read vertices, uv and polygons; normals, materials, curves and vertex colours are ignored.
 
@@ -86,7 +91,8 @@ def read_obj(path: str | os.PathLike[str]) -> ObjData:
         If a line cannot be understood (says which), an index is out of range, or there is no face.
     """
     # Bytes that are not UTF-8 occur in names and comments of old files, where they do no harm.
-    text = Path(path).read_text(encoding="utf-8-sig", errors="replace").replace("\\\n", " ")
+    content = file_bytes(path, _MOST_MB)
+    text = io.TextIOWrapper(io.BytesIO(content), "utf-8-sig", errors="replace").read().replace("\\\n", " ")
     lines = text.splitlines()
     found = {"v": _Rows(3), "vt": _Rows(2), "f": _Rows(sys.maxsize)}
     named: list[int] = []
@@ -165,7 +171,7 @@ def _polygons(rows: _Rows, vertices: list[int], uv: list[int]) -> tuple[Integers
     corner = np.array([texts[word] for word in rows.words], dtype=np.int64)
     parts = [text.split("/", 2) for text in texts]
     largest = int(sizes.max(initial=3))
-    if largest * len(sizes) > _MOST_CORNERS:
+    if largest * len(sizes) > max(_FEW_CORNERS, _MOST_PADDING * sizes.sum()):
         raise _LineError(rows.at[sizes.argmax()], f"a polygon of {largest} corners among {len(sizes)} polygons")
     inside = np.arange(largest) < sizes[:, None]
     padded = np.full((2, *inside.shape), -1, dtype=np.int64)

@@ -9,8 +9,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.reading.check_file import check_file
+from toongeo.reading.promise import promised
+
 __all__ = ["Video", "read_video"]
 
+_MOST_MB = 1 << 20  # read frame by frame, so any size; only pipes and devices are refused
 _USUAL_FPS = 30.0  # of a file that does not say
 _MOST_FPS = 1000.0  # what claims more tells the ticks of its clock
 
@@ -42,6 +46,7 @@ class Video:
             capture.release()
 
 
+@promised("a video")
 def read_video(path: str | os.PathLike[str]) -> Video:
     """Open a video that OpenCV can decode.
 
@@ -63,6 +68,7 @@ def read_video(path: str | os.PathLike[str]) -> Video:
         If it is no video or empty, none of its frames can be decoded, or there is only one, as in a picture.
     """
     path = Path(path)
+    check_file(path, _MOST_MB)
     with open(path, "rb") as file:  # says whether it is there and may be read, which OpenCV does not
         if not file.read(1):
             raise ValueError(f"{path}: expected a video, got an empty file")

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from toongeo._extras import missing_extra
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.encode_image import encode_image
@@ -97,7 +98,7 @@ def usd_modules() -> Any:
     try:
         return _Modules()
     except ImportError as error:
-        raise ImportError('USDZ needs usd-core: pip install "toongeo[usd]"') from error
+        raise ImportError(missing_extra("USDZ", "usd")) from error
 
 
 def _identifier(usd: Any, name: str, taken: set[str]) -> str:

@@ -14,6 +14,7 @@ from toongeo.model.ibug68 import PARTS
 from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.outline_paths import outline_landmarks, outline_paths
+from toongeo.reading.check_file import file_bytes
 
 __all__ = ["load_eos"]
 
@@ -90,7 +91,7 @@ class _Reader:
     """Little-endian numbers, one after the other."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self.data, self.offset = path, path.read_bytes(), 0
+        self.path, self.data, self.offset = path, file_bytes(path, argument="shape"), 0
 
     def take(self, dtype: str, count: int) -> NDArray:
         size = count * np.dtype(dtype).itemsize

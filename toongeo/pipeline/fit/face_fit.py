@@ -43,6 +43,8 @@ class FitReport:
     seconds : float
     outliers : tuple of int
         Landmarks that the robust kernel has all but ignored (weight below 0.1).
+    convention : {"annotators", "scans"}
+        Whose definition of the landmarks the points were taken to follow.
     """
 
     algorithm: str
@@ -58,6 +60,7 @@ class FitReport:
     warnings: tuple[str, ...]
     seconds: float
     outliers: tuple[int, ...] = ()
+    convention: str = "annotators"
 
 
 @dataclass(frozen=True)
@@ -96,7 +99,7 @@ class FaceFit:
 
     Attributes
     ----------
-    identity : (80,) float64
+    identity : (81,) float64
         Standard deviations.
     expression : (64,) float64
         Named expressions in [0, 1], the others in standard deviations.

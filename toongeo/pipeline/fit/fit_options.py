@@ -13,6 +13,7 @@ from toongeo.pipeline.fit.adjust_coefficients import ADJUSTMENTS
 from toongeo.pipeline.fit.check_positive import check_positive
 from toongeo.pipeline.fit.fit_option_groups import JawOptions, PriorOptions, SolverOptions
 from toongeo.pipeline.fit.landmarks.robust_weights import KERNELS
+from toongeo.pipeline.fit.problem.told_convention import CONVENTIONS
 
 __all__ = ["FitOptions", "changed_options"]
 
@@ -47,6 +48,10 @@ class FitOptions:
     scheme : str, (k,) int array, or a pair (faces (k,), weights (k, 3))
         What the landmarks are: a known scheme, vertices of the model, or points in its triangles. With a table
         all points count alike, none slides along the jaw, and the 68 vertices of the result are the model's own.
+    convention : {"auto", "annotators", "scans"}
+        Whose definition of the 68 landmarks the points follow: that of people who annotate pictures, or that of the
+        scans (ICT-FaceKit) whose statistics the model's prior holds, which have the bridge of the nose, the brows and
+        the corners of the mouth elsewhere. ``"auto"`` takes the second only where it explains the points far better.
     adjust : {"expression", "identity+expression"} or None
         Bend the coefficients onto the landmarks in the end, without a prior: see `adjust_coefficients`.
     refine : bool
@@ -79,6 +84,7 @@ class FitOptions:
     focal_px: float | None = None
     principal_point: tuple[float, float] | None = None
     scheme: Any = "ibug68"
+    convention: str = "auto"
     adjust: str | None = None
     refine: bool = True
     solver: SolverOptions = field(default_factory=SolverOptions)
@@ -91,6 +97,7 @@ class FitOptions:
                 raise ValueError(f"{name}: expected {kind.__name__}, got {type(getattr(self, name)).__name__}")
         _known("robust", self.robust, (None, *KERNELS))
         _known("adjust", self.adjust, (None, *ADJUSTMENTS))
+        _known("convention", self.convention, CONVENTIONS)
         _known("camera", self.camera, _CAMERAS)
         _known("contour", self.contour, _CONTOURS)
         self._check_lens()

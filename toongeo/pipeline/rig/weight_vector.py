@@ -5,11 +5,14 @@ import numbers
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 __all__ = ["weight_vector"]
 
+_LARGEST = 1e6  # shapes of 0.1 m then still fit float32, with room for sums of them
 
-def weight_vector(weights: Mapping[str, float] | np.ndarray | None, names: Sequence[str]) -> np.ndarray:
+
+def weight_vector(weights: Mapping[str, float] | ArrayLike | None, names: Sequence[str]) -> np.ndarray:
     """Weights by name, or already a vector, as a vector in the order of ``names``.
 
     Parameters
@@ -25,7 +28,8 @@ def weight_vector(weights: Mapping[str, float] | np.ndarray | None, names: Seque
     Raises
     ------
     ValueError
-        If a name is unknown (the nearest ones are suggested), a vector has another length, or a weight is not finite.
+        If a name is unknown (the nearest ones are suggested), a vector has another length, or a weight is not finite
+        or beyond a million.
 
     Examples
     --------
@@ -43,11 +47,23 @@ def weight_vector(weights: Mapping[str, float] | np.ndarray | None, names: Seque
                 raise ValueError(f"weights: no expression {name!r}{hint}")
             if not isinstance(weight, numbers.Real):
                 raise ValueError(f"weights: expected a number for {name}, got {weight!r}")
-            beta[names.index(name)] = float(weight)
+            beta[names.index(name)] = _number(weight, name)
     else:
-        beta = np.asarray(weights, float)
+        try:
+            beta = np.asarray(weights, float)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise ValueError(f"weights: expected a mapping of names, or {len(names)} numbers ({error})") from None
         if beta.shape != (len(names),):
             raise ValueError(f"weights: expected {len(names)} values, got shape {beta.shape}")
     if not np.isfinite(beta).all():
         raise ValueError("weights: expected finite values, got NaN or infinity")
+    if (most := np.abs(beta).max(initial=0.0)) > _LARGEST:
+        raise ValueError(f"weights: expected values up to {_LARGEST:g}, got {most:g}")
     return beta
+
+
+def _number(weight: numbers.Real, name: str) -> float:
+    try:
+        return float(weight)
+    except OverflowError:
+        raise ValueError(f"weights: expected a number for {name}, got one beyond all floats") from None

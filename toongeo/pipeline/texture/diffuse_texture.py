@@ -77,7 +77,11 @@ def diffuse_texture(
     # Float pictures are computed in float64: a sum of equal float32 values is exact there.
     work = np.float32 if img.dtype.kind == "u" else np.float64
     framed = _framed(img, mask, work)
+    # A sum of eight of the largest floats is none; a power of two and back changes no digit of such.
+    shrink = work(2.0**-4) if np.abs(framed).max() > np.finfo(work).max / 16 else work(1)
+    framed[..., :-1] *= shrink
     (_layers if order == "layers" else _sequential)(framed, mask, _PAIRS[connectivity])
+    framed[..., :-1] /= shrink
     if img.dtype.kind == "u":
         np.rint(framed, out=framed)
     # Known values went to a wider type and come back as they were.

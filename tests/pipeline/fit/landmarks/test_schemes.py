@@ -105,7 +105,7 @@ def test_outliers_in_a_table_are_found(model, spots):
     pixels[[3, 50, 77]] += [150, -90]
     fit = fit_3dmm(None, pixels, scheme=spots)
     assert fit.report.outliers == (3, 50, 77)
-    assert np.linalg.norm(fit.vertices - clean.vertices, axis=1).max() < 0.6
+    assert np.linalg.norm(fit.vertices - clean.vertices, axis=1).max() < 0.8
 
 
 def test_bad_tables(model, points):

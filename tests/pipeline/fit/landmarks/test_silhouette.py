@@ -18,8 +18,8 @@ JAW = PARTS["jaw"]
 
 
 def found(model, camera, pixels):
-    lines = visible_landmarks(landmark_basis(model), np.zeros(144), camera.rotation)
-    return silhouette_landmarks(model, np.zeros(144), camera, pixels, lines), lines
+    lines = visible_landmarks(landmark_basis(model), np.zeros(145), camera.rotation)
+    return silhouette_landmarks(model, np.zeros(145), camera, pixels, lines), lines
 
 
 @pytest.mark.parametrize("yaw", [-35, 0, 20])

@@ -139,7 +139,7 @@ def test_boxes_go_to_what_the_template_looks_like(rng):
 def test_the_template_fits_its_own_faces_and_no_others(model, rng):
     from toongeo.render import ScaledOrthographicCamera
 
-    face = model.vertices(model.prior.mean + 0.5 * rng.normal(size=80))[model.landmarks]
+    face = model.vertices(model.prior.mean + 0.5 * rng.normal(size=81))[model.landmarks]
     seen = ScaledOrthographicCamera.look(yaw=25.0, roll=10.0).project(face)
     assert template_residuals(seen).shape == (51,) and np.sqrt((template_residuals(seen) ** 2).mean()) < 0.03
     noisy = seen + rng.normal(0, 0.2 * box_of(seen)[2], (68, 2))

@@ -11,9 +11,9 @@ from toongeo.model.anatomy.lid_rings import lid_rings
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.anatomy.rims import opening_rim, rim_path
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_lids
-from toongeo.pipeline.rig.eyes.crossing_triangles import crossing_all, resolve_crossings
 from toongeo.pipeline.rig.eyes.lid_closure import lid_closure
 from toongeo.pipeline.rig.eyes.visible_eyeballs import visible_eyeballs
+from toongeo.pipeline.rig.skin.crossing_triangles import crossing_all, resolve_crossings
 
 BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
 AROUND = ("browDown", "browInnerUp", "cheekSquint", "eyeBlink", "eyeSquint", "eyeWide", "mouthSmile")

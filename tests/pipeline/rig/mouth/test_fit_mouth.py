@@ -10,11 +10,14 @@ from toongeo.metrics import mesh_quality
 from toongeo.model.anatomy.lip_line import lip_line
 from toongeo.model.anatomy.parts import TEETH_AND_TONGUE
 from toongeo.model.expression_weights import preset
-from toongeo.pipeline import fit_mouth
+from toongeo.pipeline import build_rig, fit_mouth, neutral_face
 from toongeo.pipeline.align.keep_teeth_inside import enclosed
 from toongeo.pipeline.rig.mouth.close_slit import close_slit
 from toongeo.pipeline.rig.mouth.hang_teeth import hang_teeth
+from toongeo.pipeline.rig.mouth.lower_face import crossing_count
+from toongeo.pipeline.rig.mouth.open_as_drawn import open_as_drawn
 from toongeo.pipeline.rig.mouth.seal_lips import GAP, _heights, _up, seal_lips
+from toongeo.pipeline.rig.mouth.unfold_mouth import unfold_mouth
 from toongeo.render import ScaledOrthographicCamera, rasterize
 
 SEALED = {"jawOpen": 1.0, "mouthClose": 1.0}
@@ -201,3 +204,40 @@ def test_no_tooth_shows_between_closed_lips(closed_mouth, yaw):
 def test_an_open_mouth_stays_open(aligned, transferred):
     face, rig = aligned("manga_girl"), transferred("manga_girl")
     assert close_slit(face, rig) is rig
+
+
+FOLDING = ("mouthSmileLeft", "mouthUpperUpLeft", "mouthUpperUpRight", "mouthRight")
+
+
+@pytest.fixture(scope="module")
+def folded(aligned):
+    """A mouth drawn open with thin lips, closed, and its rig before and after its skin is unfolded."""
+    drawn = aligned("bad_guy")
+    face = neutral_face(drawn)
+    rig = seal_lips(face, close_slit(face, build_rig(face)))
+    rig = seal_lips(face, open_as_drawn(face, rig, drawn.vertices))
+    return face, rig, unfold_mouth(face, rig)
+
+
+def test_expressions_push_less_skin_through_skin(folded):
+    face, before, after = folded
+    counts = np.array(
+        [[crossing_count(face.model, rig.vertices({name: 1.0})) for rig in (before, after)] for name in FOLDING]
+    )
+    assert (counts[:, 1] <= counts[:, 0]).all()
+    assert counts[:, 1].sum() < 0.7 * counts[:, 0].sum()
+
+
+def test_unfolded_skin_stays_where_it_was_still_and_seals_as_before(folded):
+    _, before, after = folded
+    still = ~before.deltas.any(2)
+    assert not after.deltas[still].any()
+    np.testing.assert_array_equal(after.neutral, before.neutral)
+    np.testing.assert_allclose(after.vertices(SEALED), before.vertices(SEALED), atol=1e-4)
+
+
+def test_expressions_that_do_not_fold_are_left_alone(folded):
+    _, before, after = folded
+    for name in ("browInnerUpLeft", "eyeBlinkLeft", "mouthPucker"):
+        k = before.names.index(name)
+        np.testing.assert_array_equal(after.deltas[k], before.deltas[k])

@@ -11,17 +11,32 @@ export async function loadAvatar(bytes) {
   const meshes = [];
   gltf.scene.traverse((object) => object.isMesh && meshes.push(object));
   const moving = meshes.filter((mesh) => mesh.morphTargetDictionary);
-  moving.forEach((mesh) => bendNormals(mesh.geometry));
   const names = [...new Set(moving.flatMap((mesh) => Object.keys(mesh.morphTargetDictionary)))];
   const own = new Map(meshes.map((mesh) => [mesh, mesh.material]));
+  const wanted = Object.fromEntries(names.map((name) => [name, 0]));
+  let added = {}; // what idle life puts upon the weights that are wanted
 
-  function set(weights) {
+  function apply(changed) {
     for (const mesh of moving) {
-      for (const [name, weight] of Object.entries(weights)) {
+      for (const name of changed) {
         const index = mesh.morphTargetDictionary[name];
-        if (index !== undefined) mesh.morphTargetInfluences[index] = weight;
+        if (index === undefined) continue;
+        const more = added[name];
+        mesh.morphTargetInfluences[index] = more ? Math.min(Math.max(wanted[name] + more, 0), Math.max(1, wanted[name])) : wanted[name];
       }
     }
+  }
+
+  function set(weights) {
+    const known = Object.keys(weights).filter((name) => Object.hasOwn(wanted, name));
+    for (const name of known) wanted[name] = weights[name];
+    apply(known);
+  }
+
+  function add(weights) {
+    const changed = Object.keys({ ...added, ...weights });
+    added = weights;
+    apply(changed.filter((name) => Object.hasOwn(wanted, name)));
   }
 
   function wear(look) {
@@ -30,15 +45,33 @@ export async function loadAvatar(bytes) {
     }
   }
 
-  function weights() {
-    const found = Object.fromEntries(names.map((name) => [name, 0]));
+  // What an animation has made of the influences becomes what is wanted.
+  function adopt() {
     for (const mesh of moving) {
-      for (const [name, index] of Object.entries(mesh.morphTargetDictionary)) found[name] = mesh.morphTargetInfluences[index];
+      for (const [name, index] of Object.entries(mesh.morphTargetDictionary)) wanted[name] = mesh.morphTargetInfluences[index];
     }
-    return found;
+    return { ...wanted };
+  }
+
+  // Expressions are shaded as they should be only after this, which takes a while; the page stays awake.
+  async function finish() {
+    for (const mesh of moving) await bendNormals(mesh.geometry);
   }
 
   const hair = meshes.find((mesh) => mesh.name === 'hair');
 
-  return { scene: gltf.scene, hair, bounds: new Box3().setFromObject(gltf.scene, true), clips: gltf.animations, names, set, weights, wear };
+  return {
+    scene: gltf.scene,
+    hair,
+    bounds: new Box3().setFromObject(gltf.scene, true),
+    clips: gltf.animations,
+    names,
+    set,
+    add,
+    adopt,
+    finish,
+    weights: () => ({ ...wanted }),
+    rest: () => Object.fromEntries(names.map((name) => [name, 0])),
+    wear,
+  };
 }

@@ -1,20 +1,29 @@
 // Targets move vertices; without targets for the normals a smile would be shaded like a face at rest.
 import { BufferAttribute, Vector3 } from 'three';
 
-export function bendNormals(geometry) {
+const LONG = 12; // ms that a page may be deaf
+
+export async function bendNormals(geometry) {
   const targets = geometry.morphAttributes.position;
   if (!targets || geometry.morphAttributes.normal || !geometry.morphTargetsRelative || !geometry.index) return;
   const twin = firstTwins(geometry.attributes.position);
   const rest = points(geometry.attributes.position);
   const index = geometry.index.array;
   const base = normals(rest, index, twin);
-  geometry.morphAttributes.normal = targets.map((target) => {
+  const all = [];
+  let began = performance.now();
+  for (const target of targets) {
     const moved = points(target);
     for (let i = 0; i < moved.length; i++) moved[i] += rest[i];
     const bent = normals(moved, index, twin);
     for (let i = 0; i < bent.length; i++) bent[i] -= base[i];
-    return new BufferAttribute(bent, 3);
-  });
+    all.push(new BufferAttribute(bent, 3));
+    if (performance.now() - began < LONG) continue;
+    await new Promise((resume) => setTimeout(resume));
+    began = performance.now();
+  }
+  geometry.morphAttributes.normal = all;
+  geometry.dispose(); // it may have been drawn without them
 }
 
 // Coordinates as plain floats, whatever the accessor stores.

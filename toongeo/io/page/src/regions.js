@@ -1,11 +1,11 @@
 // Where on the face a target is, told by how its name begins; the order is that of the panel.
 const REGIONS = [
-  ['Eyes', /^eye(Blink|Wide|Squint|s)/],
-  ['Gaze', /^(eyeLook|look)/],
-  ['Brows', /^brow/],
-  ['Nose and cheeks', /^(nose|cheek)/],
-  ['Jaw and tongue', /^(jaw|tongue)/],
   ['Mouth', /^mouth/],
+  ['Eyes', /^eye(Blink|Wide|Squint|s)/],
+  ['Jaw and tongue', /^(jaw|tongue)/],
+  ['Brows', /^brow/],
+  ['Gaze', /^(eyeLook|look)/],
+  ['Nose and cheeks', /^(nose|cheek)/],
   ['Speech', /^viseme/],
 ];
 

@@ -1,5 +1,5 @@
 // Camera, lights and canvas; draws only when something has changed.
-import { AmbientLight, DirectionalLight, PerspectiveCamera, Scene, SRGBColorSpace, Vector3, WebGLRenderer } from 'three';
+import { AmbientLight, Color, DirectionalLight, PerspectiveCamera, Scene, SRGBColorSpace, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 const STEP = Math.PI / 36; // of an arrow key
@@ -27,7 +27,10 @@ export class Stage {
     this.ticks = new Set();
     this.waiting = false;
     this.last = 0;
-    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    // Until somebody turns it, the head is shown whole from the front, however the window changes.
+    this.isFront = false;
+    this.controls.addEventListener('start', () => (this.isFront = false));
+    new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener('keydown', (event) => this.key(event));
   }
 
@@ -52,11 +55,13 @@ export class Stage {
     this.controls.minDistance = distance / 6;
     this.controls.maxDistance = distance * 3;
     this.controls.update();
+    this.isFront = true;
     this.draw();
   }
 
   // Turned about the head by angles in radians, nearer by a factor.
   turn(sideways, up, nearer = 1) {
+    this.isFront = false;
     const { target } = this.controls;
     const offset = this.camera.position.clone().sub(target);
     const polar = Math.min(Math.max(Math.acos(offset.y / offset.length()) - up, 0.05), Math.PI - 0.05);
@@ -83,11 +88,12 @@ export class Stage {
   }
 
   resize() {
-    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (this.isFront) this.front();
     this.draw();
   }
 
@@ -109,6 +115,12 @@ export class Stage {
       this.renderer.render(this.scene, this.camera);
       if (this.ticks.size) this.draw();
     });
+  }
+
+  // The ground of the page behind the head, for films; pictures have none.
+  ground(shown) {
+    this.scene.background = shown ? new Color(getComputedStyle(document.body).backgroundColor) : null;
+    this.draw();
   }
 
   // A PNG without background, as large as the canvas.

@@ -14,6 +14,7 @@ from toongeo.io.readers.landmarks.read_npy import read_npy
 from toongeo.io.readers.landmarks.read_pts import read_pts
 from toongeo.io.readers.landmarks.read_rows import read_rows
 from toongeo.io.readers.landmarks.read_table import read_table
+from toongeo.reading.promise import promise
 
 __all__ = ["LANDMARK_READERS", "LandmarkReader", "raw_landmarks"]
 
@@ -53,4 +54,5 @@ def raw_landmarks(path: Path, scheme: str, one_based: bool | None) -> RawLandmar
         raise ValueError(f"path: expected {', '.join(most)} or {last}, got {path}")
     if scheme != "auto" and scheme not in SCHEMES:
         raise ValueError(f"scheme: expected 'auto' or one of {', '.join(map(repr, SCHEMES))}, got {scheme!r}")
-    return reader.read(path, int(reader.one_based if one_based is None else one_based))
+    with promise(path, "landmarks"):
+        return reader.read(path, int(reader.one_based if one_based is None else one_based))

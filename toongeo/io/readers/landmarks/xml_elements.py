@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 from xml.parsers import expat
 
-from toongeo.io.readers.landmarks.file_contents import file_bytes
+from toongeo.reading.check_file import file_bytes
 
 __all__ = ["xml_elements"]
 

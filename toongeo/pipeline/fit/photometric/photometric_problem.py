@@ -86,7 +86,7 @@ class PhotometricProblem:
         fit_options: FitOptions,
     ) -> PhotometricProblem:
         """The problem for a picture, a landmark fit, its landmarks (68, 2) px and a mask (H, W)."""
-        landmarks = starting_problem(fit.model, pixels, fit_options)
+        landmarks = starting_problem(fit.model, pixels, replace(fit_options, convention=fit.report.convention))
         samples = photometric_samples(fit.model, options.samples)
         start = pack_unknowns(fit, landmarks)
         face = landmarks.frame.from_pixels(fit.project(fit.vertices[np.unique(samples.faces)]))

@@ -65,6 +65,7 @@ class FitTask:
             warnings=self.warnings,
             seconds=seconds,
             outliers=solution.outliers,
+            convention=solution.convention,
         )
         fit = FaceFit(
             identity=solution.coefficients[problem.unknowns.identity],

@@ -49,12 +49,15 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
         )
         parts = [loss.part(minimum.x, k) for k in range(len(problems))]
         passes, evaluations = passes + 1, evaluations + minimum.evaluations
-        before = states
+        before, asked = states, problems
+        told = [problem.told(placed, part) for problem, placed, part in zip(problems, before, parts, strict=True)]
+        problems, parts = [problem for problem, _ in told], [part for _, part in told]
         states = [
             problem.renewed(placed, part, first=passes == 1)
             for problem, placed, part in zip(problems, before, parts, strict=True)
         ]
-        if all(p.settled(*pair) for p, *pair in zip(problems, before, states, strict=True)):
+        stayed = all(new.target.convention == old.target.convention for new, old in zip(problems, asked, strict=True))
+        if stayed and all(p.settled(*pair) for p, *pair in zip(problems, before, states, strict=True)):
             break
     return [
         problem.solution(np.minimum(part, after.upper), placed, minimum.status, passes, evaluations)

@@ -5,7 +5,7 @@ Constants were chosen on heads of known shape and ten pictures (``benchmarks/tru
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,7 @@ from toongeo.pipeline.fit.problem.exclusive_bounds import exclusive_bounds
 from toongeo.pipeline.fit.problem.landmark_target import LandmarkTarget, SearchBox
 from toongeo.pipeline.fit.problem.landmark_weights import evened_weights
 from toongeo.pipeline.fit.problem.solution import PassState, Solution
+from toongeo.pipeline.fit.problem.told_convention import scans_tell
 
 __all__ = ["LandmarkProblem"]
 
@@ -78,10 +79,10 @@ class LandmarkProblem:
         A few points that lie far off beside the others are no face outside the model: they lose their weight, in
         the misfit and in the next pass.
         """
-        x, state = self.search.start, self.first_state(self.search.start)
+        problem, x, state = self, self.search.start, self.first_state(self.search.start)
         passes = evaluations = 0
         while passes < self.options.solver.max_passes:
-            loss = self.loss(state.vertices, state.prior_weight, state.robust_weight)
+            loss = problem.loss(state.vertices, state.prior_weight, state.robust_weight)
             decoupled = decoupled_pose(loss, x)
             minimum = nlopt_minimize(
                 decoupled,
@@ -95,14 +96,32 @@ class LandmarkProblem:
             )
             x = decoupled.x(minimum.x)
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
-            before, state = state, self.renewed(state, x, first=passes == 1)
-            if self.settled(before, state):
+            asked, (problem, x) = problem, problem.told(state, x)
+            before, state = state, problem.renewed(state, x, first=passes == 1)
+            if asked.target.convention == problem.target.convention and problem.settled(before, state):
                 break
-        return self.solution(np.minimum(x, state.upper), before, minimum.status, passes, evaluations)
+        return problem.solution(np.minimum(x, state.upper), before, minimum.status, passes, evaluations)
 
     def first_state(self, x: Floats) -> PassState:
         """What the first pass holds fixed."""
         return PassState(self.visible(x), self.target.robust_weight, self.options.prior_weight, self.search.bounds[1])
+
+    def told(self, state: PassState, x: Floats) -> tuple[LandmarkProblem, Floats]:
+        """This problem, or the same with the landmarks of scans where the first pass, which ended at ``x``, tells so.
+
+        With it comes where the next pass begins.
+
+        It is asked once. The points of a mesh of scans are nearly all off in the same way from where annotators click,
+        and no face explains that.
+        """
+        target = self.target
+        if target.scan_offsets is None:
+            return self, x
+        other = replace(self, target=replace(target, offsets=target.scan_offsets, convention="scans"))
+        before, after = (p.loss(state.vertices, state.prior_weight, state.robust_weight) for p in (self, other))
+        there = scans_tell(before, after, x, (self.search.bounds[0], state.upper))
+        told, x = (self, x) if there is None else (other, there)
+        return replace(told, target=replace(told.target, scan_offsets=None)), x
 
     def renewed(self, state: PassState, x: Floats, *, first: bool) -> PassState:
         """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
@@ -139,6 +158,7 @@ class LandmarkProblem:
             status=status,
             passes=passes,
             evaluations=evaluations,
+            convention=self.target.convention,
             outliers=tuple(int(k) for k in self.target.seen[state.robust_weight < _IGNORED]),
         )
 

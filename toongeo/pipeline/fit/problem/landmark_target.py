@@ -27,7 +27,11 @@ class LandmarkTarget:
     weights : (k, 2, 2) float, 1/mm^2
         Their weights in Eq. 4, with errors in outer-eye distances.
     offsets : (68, 3) float, mm, model frame
-        From the landmarks of the model to where annotators see them.
+        From the landmarks of the model to where the points are.
+    scan_offsets : (68, 3) float, mm, model frame, or None
+        The same for points of a mesh of scans; None: it is settled whose they are.
+    convention : {"annotators", "scans"}
+        Whose definition ``offsets`` follow.
     own : mean (k, 3) and modes (3 k, c), or None
         Landmarks of the caller's own table, which do not slide.
     neighbours : (k, k) bool
@@ -43,6 +47,8 @@ class LandmarkTarget:
     own: tuple[Floats, Floats] | None
     neighbours: NDArray[np.bool_]
     robust_weight: Floats
+    scan_offsets: Floats | None = None
+    convention: str = "annotators"
 
     @property
     def count(self) -> int:

@@ -28,6 +28,7 @@ class Solution:
     passes: int
     evaluations: int
     outliers: tuple[int, ...]
+    convention: str
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,6 +59,10 @@ def starting_problem(
     # The offsets of jaw points start on the contour lines; a point of the silhouette is where it is seen.
     known = model.prior if table is None and options.contour == "lines" else None
     offsets = np.zeros((68, 3)) if known is None else known.landmark_offsets
+    scan_offsets = None if known is None or options.convention == "annotators" else known.scan_offsets
+    convention = "annotators"
+    if options.convention == "scans" and scan_offsets is not None:
+        offsets, scan_offsets, convention = scan_offsets, None, "scans"
     expected = likeliest(model, unknowns)
     start = start_vector(guess, unknowns, expected)
     # The expected face sets the unit of the errors, whatever the guess: a fit does not minimise where it starts.
@@ -95,6 +99,8 @@ def starting_problem(
             own=own if own is None else (own[0][seen], _row_blocks(own[1], seen)),
             neighbours=_neighbours(seen, table),
             robust_weight=robust_weight[seen],
+            scan_offsets=scan_offsets,
+            convention=convention,
         ),
         search=SearchBox(
             start=start,

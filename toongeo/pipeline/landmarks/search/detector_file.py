@@ -13,6 +13,7 @@ from toongeo.pipeline.landmarks.search.cascade import Cascade, CascadeStage, Par
 from toongeo.pipeline.landmarks.search.face_boxes import BoxTemplates
 from toongeo.pipeline.landmarks.search.face_judge import FaceJudge
 from toongeo.pipeline.landmarks.search.face_verifier import FaceVerifier
+from toongeo.reading.read_npz import read_npz
 
 __all__ = ["DetectorParts", "detector_arrays", "read_detector", "shipped_detector"]
 
@@ -67,9 +68,8 @@ def _stages(arrays: dict[str, NDArray[Any]], prefix: str) -> tuple[CascadeStage,
 
 def read_detector(path: Path) -> DetectorParts:
     """The detector of a file that :func:`detector_arrays` describes."""
-    with np.load(path, allow_pickle=False) as archive:
-        z = {name: archive[name] for name in archive.files}
-    single = {name: a.astype(np.float32) if a.dtype == np.float16 else a for name, a in z.items()}
+    z = read_npz(path, expected="a landmark detector")
+    single: dict[str, Any] = {name: a.astype(np.float32) if a.dtype == np.float16 else a for name, a in z.items()}
     parts = tuple(
         PartCascade(z[f"part{k}_rows"], z[f"part{k}_shape"], _stages(single, f"part{k}_stage"))
         for k in range(len(z["parts"]))

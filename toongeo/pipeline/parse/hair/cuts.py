@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 
 from toongeo.arrays import Singles
+from toongeo.colour.min_cut import min_cut
 from toongeo.pipeline.parse.hair.colour_evidence import colour_evidence
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
-from toongeo.pipeline.parse.hair.min_cut import min_cut
 from toongeo.pipeline.parse.masks import Mask, grown, signed_distance
 from toongeo.pipeline.parse.working_view import WorkingView
 

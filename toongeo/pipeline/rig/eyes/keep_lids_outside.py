@@ -4,20 +4,18 @@ Constants were chosen on the seven examples and 15 caricatures (``benchmarks/con
 """
 
 import time
-from functools import lru_cache
 
 import numpy as np
 import scipy.sparse as sp
 
-from toongeo.geometry import adjacency
-from toongeo.model import MorphableModel
 from toongeo.model.anatomy.eye_patch import sagitta
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.skin.neighbour_means import neighbour_means
 
-__all__ = ["CLEARANCE", "SHUT", "cleared", "keep_lids_outside", "neighbour_means", "outwards", "shortfall"]
+__all__ = ["CLEARANCE", "SHUT", "cleared", "keep_lids_outside", "outwards", "shortfall"]
 
 CLEARANCE = 0.01  # of the radius: how far skin stays off an eyeball on its way
 _NEAR = 2.0  # radii from an eyeball's centre: skin farther from it does not come to it
@@ -116,13 +114,6 @@ def shortfall(start: np.ndarray, way: np.ndarray, radius: np.ndarray) -> np.ndar
     inside = (distance < radius) & (share > 0)
     out = (radius / np.maximum(distance, 1e-9) - 1) / np.maximum(share, _SHORTEST)
     return np.asarray(np.where(inside, out, 0.0)[:, None] * nearest)
-
-
-@lru_cache(maxsize=4)
-def neighbour_means(model: MorphableModel) -> sp.csr_array:
-    """Mean over the neighbours of each vertex."""
-    A = sp.csr_array(adjacency(model.faces, len(model.mean)), dtype=float)
-    return sp.csr_array(sp.diags_array(1 / np.maximum(A.sum(1), 1)) @ A)
 
 
 def outwards(offset: np.ndarray, radius: np.ndarray) -> np.ndarray:

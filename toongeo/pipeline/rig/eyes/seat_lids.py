@@ -11,10 +11,10 @@ from toongeo.model.anatomy.eye_patch import EyePatch, eye_patch, sagitta
 from toongeo.model.anatomy.lid_rings import LidRings, lid_rings, opening_height
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.eyes.crossing_triangles import resolve_crossings
 from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.eyes.keep_lids_outside import outwards
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.skin.crossing_triangles import resolve_crossings
 from toongeo.protocols import Camera
 
 __all__ = ["SKIN", "seat_lids"]

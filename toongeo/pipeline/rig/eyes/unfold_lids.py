@@ -11,16 +11,16 @@ from toongeo.model import MorphableModel
 from toongeo.model.anatomy.eye_patch import EyePatch, eye_patch
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.pipeline.align.align_face import AlignedFace
-from toongeo.pipeline.rig.eyes.crossing_triangles import (
+from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
+from toongeo.pipeline.rig.eyes.keep_lids_outside import CLEARANCE, outwards
+from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.skin.crossing_triangles import (
     Sheet,
     around,
     crossing_all,
     crossing_triangles,
     resolve_crossings,
 )
-from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
-from toongeo.pipeline.rig.eyes.keep_lids_outside import CLEARANCE, outwards
-from toongeo.pipeline.rig.rig import Rig
 
 __all__ = ["unfold_lids"]
 

@@ -7,6 +7,7 @@ from toongeo.pipeline.rig.mouth.close_slit import close_slit
 from toongeo.pipeline.rig.mouth.hang_teeth import hang_teeth
 from toongeo.pipeline.rig.mouth.open_as_drawn import open_as_drawn
 from toongeo.pipeline.rig.mouth.seal_lips import seal_lips
+from toongeo.pipeline.rig.mouth.unfold_mouth import unfold_mouth
 from toongeo.pipeline.rig.rig import Rig
 
 __all__ = ["fit_mouth"]
@@ -17,8 +18,9 @@ def fit_mouth(face: AlignedFace, rig: Rig, drawn: np.ndarray | None = None) -> R
 
     In this order: a mouth that is drawn closed is shut in the neutral face
     (:func:`~toongeo.pipeline.rig.mouth.close_slit.close_slit`); ``mouthClose`` seals the lips while ``jawOpen`` drops
-    the jaw, and in no expression do they cross (:func:`~toongeo.pipeline.rig.mouth.seal_lips.seal_lips`); teeth and
-    tongue follow this face's jaw and stay inside (:func:`~toongeo.pipeline.rig.mouth.hang_teeth.hang_teeth`).
+    the jaw, and in no expression do they cross (:func:`~toongeo.pipeline.rig.mouth.seal_lips.seal_lips`) or does the
+    skin around them fold (:func:`~toongeo.pipeline.rig.mouth.unfold_mouth.unfold_mouth`); teeth and tongue follow this
+    face's jaw and stay inside (:func:`~toongeo.pipeline.rig.mouth.hang_teeth.hang_teeth`).
 
     Parameters
     ----------
@@ -40,4 +42,4 @@ def fit_mouth(face: AlignedFace, rig: Rig, drawn: np.ndarray | None = None) -> R
     if drawn is not None:
         # What the contacts took from the picture's pose is among what is given back, and it must not undo them.
         rig = seal_lips(face, open_as_drawn(face, rig, drawn))
-    return hang_teeth(face, rig)
+    return hang_teeth(face, unfold_mouth(face, rig))

@@ -1,6 +1,7 @@
 """How sound the skin around a mouth is, and how it is smoothed where it crosses itself."""
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,11 +12,25 @@ from toongeo.geometry.self_intersections import self_intersections
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.motion_shares import motion_shares
 
-__all__ = ["crossing_count", "strain", "uncrossed"]
+__all__ = ["LowerFace", "crossing_count", "lower_face", "strain", "uncrossed"]
 
 _ROUNDS = 4  # of smoothing, each over one ring of vertices more where the last one did not help
 _RINGS = 2  # around crossing triangles that are smoothed at first
 _STAY = 1e-6  # of the energy of bending: keeps the system definite
+
+
+class LowerFace(NamedTuple):
+    """Vertices (k,) of the skin around the mouth, and triangles (t, 3) among them, by their place in ``vertices``."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+
+
+@lru_cache(maxsize=4)
+def lower_face(model: MorphableModel) -> LowerFace:
+    """The face as far as an opening jaw or the lips move it, with the nose above them."""
+    used, F = np.unique(model.faces[_triangles(model)], return_inverse=True)
+    return LowerFace(used, F.reshape(-1, 3))
 
 
 def crossing_count(model: MorphableModel, V: np.ndarray) -> int:
@@ -62,9 +77,8 @@ def uncrossed(model: MorphableModel, V: np.ndarray) -> np.ndarray:
 
 def _crossing(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     """Triangles (c,) of the model, around its mouth, that intersect others there."""
-    around = _triangles(model)
-    used, F = np.unique(model.faces[around], return_inverse=True)
-    return around[np.unique(self_intersections(V[used], F.reshape(-1, 3)))]
+    patch = lower_face(model)
+    return _triangles(model)[np.unique(self_intersections(V[patch.vertices], patch.faces))]
 
 
 def _frames(V: np.ndarray, F: np.ndarray) -> np.ndarray:

@@ -41,7 +41,13 @@ def lid_ring(model: MorphableModel, side: str, zone: np.ndarray, edges: sp.csr_a
 
 
 def lid_membrane(
-    model: MorphableModel, side: str, zone: np.ndarray, edges: sp.csr_array, colours: np.ndarray, closed: np.ndarray
+    model: MorphableModel,
+    side: str,
+    zone: np.ndarray,
+    edges: sp.csr_array,
+    colours: np.ndarray,
+    closed: np.ndarray,
+    relief: float = 1.0,
 ) -> np.ndarray:
     """Colours (n, 3) whose lid is skin as its surroundings have it, without lashes, lines and shadows.
 
@@ -60,6 +66,8 @@ def lid_membrane(
         Of the texture.
     closed : (n, 3) float, mm
         The face with this eye shut.
+    relief : float
+        How much of the shading there is: in a drawing without shadows a shaded lid would be a stain.
     """
     near, ring = lid_ring(model, side, zone, edges)
     if not ring.any():
@@ -74,6 +82,7 @@ def lid_membrane(
     filled = solve(factor_spd(sp.csc_matrix(A)), held[:, None] * colours[at] + _LOOSE * mean)
     facing = vertex_normals(closed, model.faces) @ np.array(_LIGHT_FROM)
     shade = np.clip(1 + _SHADE * zone[at] * (facing[at] - np.median(facing[known])), *_SHADED)
+    shade = 1 + relief * (shade - 1)
     shade = np.minimum(shade, 255 / np.maximum(filled.max(1), 1))  # light skin keeps its hue
     painted = np.array(colours, float)
     painted[at] = filled * shade[:, None]

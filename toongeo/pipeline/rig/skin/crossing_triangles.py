@@ -1,22 +1,31 @@
-"""Where the skin around an eye passes through itself.
+"""Where a patch of skin passes through itself.
 
 Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from toongeo.geometry import self_intersections
 from toongeo.model import MorphableModel
-from toongeo.model.anatomy.eye_patch import EyePatch
-from toongeo.pipeline.rig.eyes.keep_lids_outside import neighbour_means
+from toongeo.pipeline.rig.skin.neighbour_means import neighbour_means
 
-__all__ = ["Sheet", "around", "crossing_all", "crossing_triangles", "resolve_crossings"]
+__all__ = ["Sheet", "SkinPatch", "around", "crossing_all", "crossing_triangles", "resolve_crossings"]
 
 _ROUNDS = 5  # of looking for crossings and smoothing
 _WIDTH = 4  # edges around them within which ways are smoothed
 _PASSES = 3  # of smoothing a round
+
+
+class SkinPatch(Protocol):
+    """Vertices (k,) of a head, and triangles (m, 3) among them, by their place in ``vertices``."""
+
+    @property
+    def vertices(self) -> np.ndarray: ...
+
+    @property
+    def faces(self) -> np.ndarray: ...
 
 
 class Sheet(NamedTuple):
@@ -26,7 +35,7 @@ class Sheet(NamedTuple):
     triangles: np.ndarray
 
 
-def crossing_triangles(patch: EyePatch, sheets: list[Sheet]) -> list[np.ndarray]:
+def crossing_triangles(patch: SkinPatch, sheets: list[Sheet]) -> list[np.ndarray]:
     """Of each sheet, the triangles that intersect others of it, as rows of ``patch.faces``.
 
     All sheets are laid side by side and looked at as one mesh, which is much faster than one after the other.
@@ -43,13 +52,13 @@ def crossing_triangles(patch: EyePatch, sheets: list[Sheet]) -> list[np.ndarray]
     return [triangles[hit[owner[hit] == k]] for k in range(len(sheets))]
 
 
-def crossing_all(patch: EyePatch, V: np.ndarray) -> np.ndarray:
+def crossing_all(patch: SkinPatch, V: np.ndarray) -> np.ndarray:
     """The triangles of a patch that intersect others of it in a head V (n, 3)."""
     return crossing_triangles(patch, [Sheet(V, np.arange(len(patch.faces)))])[0]
 
 
 def resolve_crossings(
-    model: MorphableModel, patch: EyePatch, start: np.ndarray, ways: np.ndarray, allowed: int
+    model: MorphableModel, patch: SkinPatch, start: np.ndarray, ways: np.ndarray, allowed: int
 ) -> np.ndarray:
     """Ways (n, 3) from ``start`` (n, 3), made alike where they lead triangles of a patch through each other.
 

@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from toongeo.pipeline.parse.hair.min_cut import min_cut
+from toongeo.colour.min_cut import min_cut
 
 STEPS = (((0, 1), 1.0), ((1, 0), 1.0), ((1, 1), 0.7), ((1, -1), 0.7))
 

@@ -1,0 +1,63 @@
+"""How soon the page of an avatar shows its first frame, and how large displays in notebooks are.
+
+usage: python benchmarks/page.py
+(needs Chromium, and `npm ci --prefix tests/web`)
+
+first frame, s: from the address to the first frame, by the page's own clock, in Chromium without a graphics card;
+meant for a machine that does nothing else. CPU s until then, of the page's process and of the one that stands in for
+the graphics card: these do not depend on how busy the machine is.
+"""
+
+import os
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
+    os.environ[variable] = "1"
+
+import json
+import subprocess
+import tempfile
+from pathlib import Path
+from statistics import median
+
+from pictures import FOLDER, roles
+
+from toongeo import make_avatar, read_image, read_landmarks
+
+ROOT = Path(__file__).parents[1]
+NAMES = ("moustache_man", "blue_girl")
+RUNS = 3
+STEPS = [
+    {"wait": "document.documentElement.dataset.first"},
+    {"cpu": True},
+    {"run": "Number(document.documentElement.dataset.first) / 1000"},
+]
+
+
+def first_frame(page: Path, folder: Path) -> tuple[float, float, float]:
+    """Seconds to the first frame, and CPU seconds of the page and of the renderer in software."""
+    (folder / "steps.json").write_text(json.dumps(STEPS))
+    command = ["node", ROOT / "tests" / "web" / "browse.mjs", page.as_uri(), folder / "steps.json", folder]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    spent, seconds = json.loads(done.stdout)["results"]
+    return seconds, spent["renderer"], spent["GPU"]
+
+
+def main() -> None:
+    print("| picture | page MB | first frame s | CPU s, page | CPU s, software GPU | picture cell kB | show() MB |")
+    print("|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for each in NAMES:
+            picture = FOLDER / f"{each}.png"
+            avatar = make_avatar(read_image(picture), read_landmarks(picture.with_suffix(".pts")))
+            page = folder / "face.html"
+            avatar.save(page)
+            runs = [first_frame(page, folder) for _ in range(RUNS)]
+            times = " | ".join(f"{median(column):.2f}" for column in zip(*runs, strict=True))
+            cell, shown = len(avatar._repr_png_()) / 1e3, len(avatar.show()._repr_html_()) / 1e6
+            print(f"| {each} | {page.stat().st_size / 1e6:.1f} | {times} | {cell:.0f} | {shown:.1f} |")
+    print(roles("page", NAMES))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Films: frames on all cores, encoders, sound."""

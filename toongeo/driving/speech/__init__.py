@@ -1,0 +1,1 @@
+"""Speech as motion: timings of visemes, or the sound alone."""

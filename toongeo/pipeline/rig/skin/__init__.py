@@ -1,0 +1,1 @@
+"""Skin that passes through itself."""

@@ -1,0 +1,201 @@
+"""Which pixels are skin, by the landmarks and by colour."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from toongeo.arrays import Floats, Mask, Singles
+from toongeo.colour.min_cut import min_cut
+from toongeo.pipeline.parse.guided_filter import guided_filter
+from toongeo.pipeline.parse.masks import filled, grown
+from toongeo.pipeline.stylize.appearance.head_light import HeadLight
+from toongeo.pipeline.stylize.appearance.pixels import blurred, enlarged, hull_of, placed_in, reduced
+
+__all__ = ["SkinRegion", "skin_region"]
+
+_WORKING = 70.0  # px of the face in which the cut is made
+# In face sizes: how far the jaw-brow hull is kept from its border and from features, and how far skin may reach from
+# the fitted head and below it (the neck).
+_INNER, _FEATURE, _NEAR, _NECK = 0.04, 0.05, 0.10, 0.45
+_STRIP = 0.05  # above the brows: farther up, fringes would be learned as skin
+_SOCKETS = 0.03  # around eyes and brows, which are drawn anew on skin
+_HOLE = 0.015  # squares of face sizes: smaller holes are drawn over
+_TINY = 0.02  # thinner bridges and specks are none
+_BIN = (5.0, 4.0, 4.0)  # Lab, of the colour models
+_EVIDENCE = 4.0  # bound of their log-odds
+_PLACE, _FOREHEAD = 2.5, 1.5  # log-odds for what lies within the hull, and within the rest of the fitted face
+_HAIR = 5.0  # log-odds against what is known to be hair
+_SMOOTHNESS, _SURE = 3.0, 6.0  # of the cut
+_ROUNDS = 3
+_UNLIKE = 0.25  # likelihood of skin below which hair may grow on it
+_LIPS = 0.02  # face sizes around the lips that are drawn anew
+# The skin's colour: deviations from its median count in these tolerances (Lab; at most, offset, times).
+_MOST, _LEAST, _TIMES = (12.0, 6.0, 6.0), (4.0, 3.0, 3.0), (2.0, 1.6, 1.6)
+_FEATURES = (range(36, 42), range(42, 48), range(48, 60), range(17, 22), range(22, 27))
+_EYES_AND_BROWS = ((17, 18, 19, 20, 21, 39, 40, 41, 36), (22, 23, 24, 25, 26, 45, 46, 47, 42))
+
+
+@dataclass(frozen=True, eq=False)
+class _Planes:
+    """Planes (h, w) of the picture in which the cut is made: `lab` has three channels, the others lie in [0, 1]."""
+
+    lab: Singles
+    likely: Singles
+    inner: Singles
+    hull: Singles
+    head: Singles
+    face: Singles
+    hair: Singles
+
+
+@dataclass(frozen=True, eq=False)
+class SkinRegion:
+    """Skin of the head.
+
+    Attributes
+    ----------
+    drawn : (h, w) float32 in [0, 1]
+        What is painted as skin, sockets and mouth included.
+    seen : (h, w) float32 in [0, 1]
+        What shows skin.
+    hull : (h, w) float32 in [0, 1]
+        Between jaw and brows.
+    median, lit : (3,) float, CIELAB
+        Of the face's skin, and of its lighter half.
+    """
+
+    drawn: Singles
+    seen: Singles
+    hull: Singles
+    median: Singles
+    lit: Singles
+
+
+def skin_region(lab: Singles, landmarks: Floats, size: float, light: HeadLight, hair: Singles) -> SkinRegion:
+    """Skin of a face: colours of its cheeks and nose, cut out where they end (graph cut, Boykov and Jolly 2001).
+
+    Parameters
+    ----------
+    lab : (h, w, 3) float32
+        The abstracted picture, CIELAB.
+    landmarks : (68, 2) float, px
+    size : float, px
+        Of the face.
+    light : HeadLight
+        Where the fitted head and its face are.
+    hair : (h, w) float32 in [0, 1]
+        What is known to be hair or hat.
+    """
+    hull = _hull(lab.shape, landmarks)
+    inner = _eroded(hull, _INNER * size)
+    for feature in _FEATURES:
+        inner &= ~grown(filled(lab.shape, hull_of(landmarks[list(feature)])), _FEATURE * size)
+    inner &= hair < 0.5
+    cheeks = inner & ~_may_be_beard(lab.shape, landmarks, size)
+    pixels = lab[cheeks if cheeks.any() else hull]
+    median = np.median(pixels, axis=0)
+    lit = np.median(pixels[pixels[:, 0] >= median[0]], axis=0)
+    deviation = np.minimum(np.percentile(np.abs(pixels - median), 80, axis=0), _MOST)
+    distance = (lab - median) / ((deviation + _LEAST) * _TIMES)
+    likely = np.exp(-0.5 * np.square(distance).sum(axis=-1)).astype(np.float32)
+    factor = min(1.0, _WORKING / size)
+    planes = (likely, inner, hull, light.head, light.face, hair)
+    small = _Planes(reduced(lab, factor), *(reduced(np.asarray(plane, np.float32), factor) for plane in planes))
+    cut = _cut(small, placed_in(landmarks, factor), size * factor)
+    soft = guided_filter(np.asarray(lab / 100, np.float32), enlarged(cut, lab.shape), max(2, round(0.03 * size)), 2e-3)
+    soft = np.clip(blurred(soft, 0.006 * size), 0, 1)
+    covered = _covered(lab.shape, landmarks, size)
+    return SkinRegion(
+        np.maximum(soft, covered),
+        soft,
+        blurred(hull.astype(np.float32), 0.01 * size),
+        median.astype(np.float32),
+        lit.astype(np.float32),
+    )
+
+
+def _cut(small: _Planes, landmarks: Floats, size: float) -> Singles:
+    """Skin (h, w) of 0 and 1 in a small picture."""
+    low = np.maximum(small.head, small.hull) > 0.5
+    chin = np.arange(len(small.lab))[:, None] > landmarks[8, 1]
+    body = np.zeros((2 * round(_NECK * size) + 1, 1), np.uint8)
+    body[: round(_NECK * size) + 1] = 1
+    neck = cv2.dilate((low & chin).astype(np.uint8), body) > 0
+    low |= neck
+    near, far = grown(low, _INNER * size), ~grown(low, _NEAR * size)
+    brows = landmarks[17:27].mean(axis=0)
+    down = landmarks[8] - brows
+    down = down / np.linalg.norm(down)
+    rows, columns = np.mgrid[: small.lab.shape[0], : small.lab.shape[1]]
+    below = ((columns - brows[0]) * down[0] + (rows - brows[1]) * down[1]) / size > 0
+    strip = grown(small.hull > 0.5, _STRIP * size)
+    sure = (small.inner > 0.6) & (small.likely > 0.25)
+    skin = sure | ((small.likely > 0.35) & near & (below | strip) & (small.hair < 0.5))
+    beard = _may_be_beard(small.lab.shape, landmarks, size) & (small.likely < _UNLIKE)
+    place = np.where(
+        small.hull > 0.5, _PLACE, np.where((small.face > 0.5) & (small.hair < 0.5), _FOREHEAD, 0.0)
+    ).astype(np.float32)
+    place = np.where(beard, 0, place) - _HAIR * small.hair
+    outside = (~skin & (small.likely < 0.1) & (small.hull < 0.5)) | far | (small.hair > 0.5) | beard
+    for _ in range(_ROUNDS):
+        odds = _colour_odds(small.lab, skin, outside) + place
+        odds = np.where(far, -9.0, np.where(sure, 9.0, odds)).astype(np.float32)
+        skin = min_cut(odds, small.lab, _SMOOTHNESS, _SURE)
+        outside = ~skin & ((small.hull < 0.5) | beard)
+    skin = _tidied(skin, sure, size)
+    return skin.astype(np.float32)
+
+
+def _colour_odds(lab: Singles, inside: Mask, outside: Mask) -> Singles:
+    """Log-odds (h, w) of inside by histograms of both sides, smoothed over neighbouring colours."""
+    shape = (22, 66, 66)
+    cells = np.floor((lab + [0.0, 128.0, 128.0]) / _BIN).astype(np.int64)
+    cells = np.ravel_multi_index(tuple(np.moveaxis(np.clip(cells, 0, np.array(shape) - 1), -1, 0)), shape)
+    shares = []
+    for mask in (inside, outside):
+        counts = np.bincount(cells[mask], minlength=int(np.prod(shape))).reshape(shape).astype(np.float32)
+        for axis in range(3):
+            counts = 0.5 * counts + 0.25 * (np.roll(counts, 1, axis) + np.roll(counts, -1, axis))
+        shares.append(counts.reshape(-1)[cells] / max(1, int(mask.sum())) + 1e-4)
+    return np.clip(np.log(shares[0] / shares[1]), -_EVIDENCE, _EVIDENCE).astype(np.float32)
+
+
+def _may_be_beard(shape: tuple[int, ...], landmarks: Floats, size: float) -> Mask:
+    """Where beards and moustaches grow: below the nose within the jaw, but for the lips."""
+    wings = landmarks[[31, 35]] + 0.06 * (landmarks[[31, 35]] - landmarks[33])
+    lower = filled(shape, np.vstack([landmarks[2:15], wings[1], landmarks[33], wings[0]]))
+    lips = filled(shape, hull_of(landmarks[48:60]))
+    return lower & ~grown(lips, _LIPS * size)
+
+
+def _tidied(skin: Mask, core: Mask, size: float) -> Mask:
+    """Without specks, bridges and small holes; only what hangs together with the face."""
+    radius = max(1, round(_TINY * size))
+    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1,) * 2)
+    skin = (cv2.morphologyEx(skin.astype(np.uint8), cv2.MORPH_OPEN, disc) > 0) | core
+    _, parts = cv2.connectedComponents(skin.astype(np.uint8))
+    skin = np.isin(parts, np.setdiff1d(parts[core], 0)) if core.any() else skin
+    _, holes, stats, _ = cv2.connectedComponentsWithStats((~skin).astype(np.uint8), connectivity=4)
+    tiny = stats[:, cv2.CC_STAT_AREA] < _HOLE * size**2
+    tiny[0] = False
+    return skin | tiny[holes]
+
+
+def _hull(shape: tuple[int, ...], landmarks: Floats) -> Mask:
+    """Between jaw and brows."""
+    return filled(shape, np.vstack([landmarks[:17], landmarks[26:16:-1]]))
+
+
+def _covered(shape: tuple[int, ...], landmarks: Floats, size: float) -> Singles:
+    """Sockets and lips, where features are drawn anew: skin lies under them."""
+    mask = np.zeros(shape[:2], bool)
+    for part, margin in (*((part, _SOCKETS) for part in _EYES_AND_BROWS), (tuple(range(48, 60)), _LIPS)):
+        mask |= grown(filled(shape, hull_of(landmarks[list(part)])), margin * size)
+    return np.clip(
+        blurred((mask & _eroded(_hull(shape, landmarks), 0.01 * size)).astype(np.float32), 0.008 * size), 0, 1
+    )
+
+
+def _eroded(mask: Mask, radius: float) -> Mask:
+    return ~grown(~mask, radius)

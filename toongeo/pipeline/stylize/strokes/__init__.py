@@ -1,0 +1,1 @@
+"""Lines where an artist draws them: along the landmarks."""

@@ -1,0 +1,1 @@
+"""What every reader of files promises, below all of them: see `promise`."""
