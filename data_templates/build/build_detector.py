@@ -17,12 +17,12 @@ from pathlib import Path
 
 import numpy as np
 from detector.clutter import CALIBRATION, CLUTTER, clutter_pictures
-from detector.samples import first_samples, joined_samples, rendered_samples
+from detector.samples import Samples, first_samples, joined_samples, rendered_samples
 from detector.strange_samples import strange_samples
 from detector.train_boxes import train_boxes
 from detector.train_cascade import train_cascade
 from detector.train_judge import train_judge
-from detector.train_parts import train_parts
+from detector.train_parts import WITHOUT_JAW, train_parts
 from detector.train_verifier import train_verifier
 from threadpoolctl import threadpool_limits
 
@@ -37,7 +37,7 @@ _NOTHING = np.zeros((0, 0), np.float32)
 _UNTRAINED = DetectorParts(
     BoxTemplates(_NOTHING, _NOTHING),
     Cascade(np.zeros((68, 2)), _NOTHING, ()),
-    FaceVerifier(_NOTHING, _NOTHING),
+    FaceVerifier(_NOTHING, _NOTHING, _NOTHING),
     FaceJudge(np.zeros(FACE_CUES), np.zeros((len(PARTS), POINT_CUES))),
 )
 
@@ -52,9 +52,9 @@ class _Size:
     held_out: int = 250
     boxes: int = 1200
     verifier: int = 1000
-    judge: int = 60
+    judge: int = 90
     clutter: int = 40
-    fresh: int = 10
+    fresh: int = 30
 
 
 _SMALL = _Size(60, 40, 10, 40, 40, 10, 2, 2)
@@ -87,35 +87,43 @@ def main() -> None:
 def trained_parts(size: _Size, processes: int, cache: Path | None, say) -> DetectorParts:
     """Every part of the detector; held-out renders choose and calibrate, and are not trained on.
 
-    The cascade of the whole face learns from the usual renders; what it leaves, most of it on drawings, the parts learn
-    from those and from drawn ones.
+    Boxes, the cascade of the whole face, the verifier and the parts learn from the usual renders and from drawn ones. A
+    second set of parts learns from the usual ones alone, but for the jaw, which caricatures teach best.
     """
     usual = rendered_samples(1, size.heads, "usual", processes, cache)
     drawn = rendered_samples(1, size.drawn, "drawn", processes, cache)
     held_out = rendered_samples(2, size.held_out, "usual", processes, cache)
     held_drawn = rendered_samples(2, size.held_out, "every", processes, cache)
     say(f"{len(usual.grey)} usual renders, {len(drawn.grey)} drawn ones", flush=True)
+    every, held_every = joined_samples((usual, drawn)), joined_samples((held_out, held_drawn))
     clutter = clutter_pictures(np.random.default_rng(3), CLUTTER, size.clutter)
 
+    def mixed(heads: int) -> Samples:
+        return joined_samples((first_samples(usual, 2 * heads), first_samples(drawn, 2 * heads)))
+
     def boxes():
-        return replace(_UNTRAINED, boxes=train_boxes(first_samples(usual, 2 * size.boxes), clutter, say=say))
+        return replace(_UNTRAINED, boxes=train_boxes(mixed(size.boxes), clutter, say=say))
 
     def cascade():
-        return replace(parts, cascade=train_cascade(usual, held_out, processes, say=say))
+        return replace(parts, cascade=train_cascade(every, held_every, processes, say=say))
 
     def verifier():
-        some = first_samples(usual, 2 * size.verifier)
+        some = mixed(size.verifier)
         return replace(parts, verifier=train_verifier(some, parts.boxes, parts.cascade, clutter, processes, say=say))
 
     def refined():
-        every = joined_samples((usual, drawn))
         trained = train_parts(every, held_drawn, parts.cascade, processes, say=say)
         return replace(parts, cascade=replace(parts.cascade, parts=trained))
+
+    def refined_for_photos():
+        trained = train_parts(usual, held_out, parts.cascade, processes, WITHOUT_JAW, say=say)
+        return replace(parts, cascade=replace(parts.cascade, photo_parts=trained))
 
     parts = _kept(cache, "boxes", boxes)
     parts = _kept(cache, "cascade", cascade)
     parts = _kept(cache, "verifier", verifier)
     parts = _kept(cache, "parts", refined)
+    parts = _kept(cache, "photo_parts", refined_for_photos)
     fresh = clutter_pictures(np.random.default_rng(4), CALIBRATION, size.fresh)
     strange = strange_samples(first_samples(held_drawn, 2 * size.judge), seed=5)
     return replace(parts, judge=train_judge(strange, parts, fresh, processes, say=say))

@@ -9,6 +9,7 @@ import pytest
 
 from tests.adapters.tiny_onnx import tiny_onnx
 from toongeo.adapters import DlibDetector, MediapipeDetector, OnnxRegressor
+from toongeo.model import default_model
 from toongeo.model.mediapipe478 import VERTICES
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.testing import check_landmark_detector, check_regressor
@@ -123,7 +124,10 @@ def test_mediapipe(monkeypatch, points, tmp_path):
 def network(tmp_path_factory):
     pytest.importorskip("onnxruntime")
     rng = np.random.default_rng(0)
-    weights = {"id": 0.1 * rng.standard_normal((136, 80)), "exp": rng.uniform(0, 0.01, (192, 64))}
+    weights = {
+        "id": 0.1 * rng.standard_normal((136, len(default_model().identity))),
+        "exp": rng.uniform(0, 0.01, (192, 64)),
+    }
     path = tmp_path_factory.mktemp("onnx") / "tiny.onnx"
     shapes = {"id": ("points", (1, 68, 2), weights["id"]), "exp": ("picture", (1, 3, 8, 8), weights["exp"])}
     path.write_bytes(tiny_onnx(shapes))

@@ -7,7 +7,7 @@ import pytest
 
 from tests.conftest import PORTRAITS
 from toongeo.app.cli import main
-from toongeo.io import read_image, write_image
+from toongeo.io import read_image, read_landmarks, write_image
 from toongeo.protocols import LandmarkDetection
 
 PICTURE, POINTS = PORTRAITS / "blue_girl.png", PORTRAITS / "blue_girl.pts"
@@ -35,10 +35,22 @@ def test_landmarks_that_are_not_sure_need_a_word(tmp_path, capsys, monkeypatch):
     arguments = ["make", str(PICTURE), "-o", str(tmp_path / "girl.glb")]
     assert main(arguments) == 3
     said = capsys.readouterr().err
-    assert "not sure (face 90 %, points 30 %)" in said and "toongeo landmarks" in said and "--accept" in said
+    assert (
+        "not sure (face 90 %, points 30 %, the picture 0 %)" in said
+        and "toongeo landmarks" in said
+        and "--accept" in said
+    )
     assert main([*arguments, "--accept"]) == 2  # goes on, to a fit that such points have not
     assert "landmarks" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_landmarks_that_the_picture_does_not_bear_out_need_a_word_too(tmp_path, capsys, monkeypatch):
+    """However sure the detector is."""
+    aside = LandmarkDetection(read_landmarks(POINTS) + [60, 40], np.full(68, 0.95), 0.99)
+    monkeypatch.setattr("toongeo.app.landmark_source.detect_landmarks", lambda img, face: aside)
+    assert main(["make", str(PICTURE), "-o", str(tmp_path / "girl.glb")]) == 3
+    assert "not sure (face 99 %, points 95 %, the picture" in capsys.readouterr().err
 
 
 def test_a_picture_without_a_face_is_refused(tmp_path, capsys):

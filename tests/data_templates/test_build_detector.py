@@ -103,9 +103,10 @@ def test_a_small_cascade_learns_and_is_the_same_twice(few, monkeypatch):
     np.testing.assert_allclose((one.shape - 80)[MIRROR] * [-1, 1], one.shape - 80, atol=1e-6)
 
     monkeypatch.setattr(train_parts, "_STAGES", train_parts._STAGES[:1])
-    monkeypatch.setattr(train_parts, "_PARTS", train_parts._PARTS[2:4])
     said.clear()
-    nose, mouth = train_parts.train_parts(few, few, one, 1, say=lambda text, **k: said.append(text))
+    nose, mouth = train_parts.train_parts(
+        few, few, one, 1, train_parts.PARTS[2:4], say=lambda text, **k: said.append(text)
+    )
     before, after = (float(word) for word in said[1].split()[-3::2])
     assert len(nose.rows) == 9 and len(mouth.rows) == 20 and after < before
 
@@ -125,7 +126,7 @@ def test_the_whole_course_goes_on_where_it_was_stopped(few, tmp_path, monkeypatc
     monkeypatch.setattr(build_detector, "rendered_samples", lambda *rest: few)
     size = build_detector._Size(8, 8, 8, 8, 4, 2, 2, 2)
     one, two = (detector_arrays(build_detector.trained_parts(size, 1, tmp_path, silent)) for _ in range(2))
-    assert {path.stem for path in tmp_path.iterdir()} == {"boxes", "cascade", "parts", "verifier"}
+    assert {path.stem for path in tmp_path.iterdir()} == {"boxes", "cascade", "parts", "photo_parts", "verifier"}
     other = detector_arrays(build_detector.trained_parts(size, 1, None, silent))
     for name, array in one.items():
         assert array.tobytes() == two[name].tobytes() == other[name].tobytes(), name

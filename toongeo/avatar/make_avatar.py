@@ -38,6 +38,7 @@ from toongeo.pipeline import (
     snap_eyes,
 )
 from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
+from toongeo.pipeline.align.fit_ears import fit_ears
 from toongeo.pipeline.align.size_teeth import size_teeth
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
@@ -91,7 +92,7 @@ def make_avatar(
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
     fit : FaceFit, optional
         To these landmarks, as one of :func:`toongeo.fit_3dmm_together`: it is kept, with its identity and
-        model. Not with ``snap`` or ``photometric``, which fit again.
+        model. Not with ``snap``, ``photometric`` or ``style``, which fit again.
     detector : LandmarkDetector or str, optional
         Finds the landmarks if none are given: see :func:`toongeo.detect_landmarks`.
     parser : FaceParser or str, optional
@@ -113,7 +114,9 @@ def make_avatar(
         Strength of the transferred expressions; see :func:`toongeo.build_rig`.
     method : {"cartoon", "caricature"}
         How the fitted face comes to its landmarks: by :func:`toongeo.align_face`, or in the deformation space of
-        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``.
+        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``. That
+        takes three to four times as long and looks no better; ask for it where you go on with its weights, as
+        ``rig="caricature"`` does.
     rig : {"transfer", "caricature"}
         Where the expressions come from: the template's, by deformation transfer, or the drawing's own, reconstructed
         from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
@@ -203,7 +206,7 @@ def make_avatar(
     goal = given if cleaned.change else landmarks  # errors are told against the points that were given, or snapped
     face = align(fit, landmarks)
     face = dataclasses.replace(face, report=dataclasses.replace(face.report, noise=cleaned.change))
-    face = size_teeth(fit_cranium(face, parse), drawn_mouth(img, parse))
+    face = size_teeth(fit_ears(fit_cranium(face, parse), parse), drawn_mouth(img, parse))
     clock.start("rig")
     neutral_aligned, shapes, drawn_face = rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo._read_only import read_only, restored
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.parts import INNER_PARTS
@@ -98,6 +99,7 @@ class MorphableModel:
     prior: FacePrior | None = None
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
     __setstate__ = restored
 
     def __post_init__(self) -> None:
@@ -218,8 +220,11 @@ class MorphableModel:
         >>> model.vertices(model.sample(np.random.default_rng(0), sigma=0.8)).shape == model.mean.shape
         True
         """
-        middle = 0.0 if self.prior is None else self.prior.mean
-        return middle + sigma * rng.standard_normal(len(self.identity))
+        middle = np.zeros(len(self.identity)) if self.prior is None else self.prior.mean
+        drawn = sigma * rng.standard_normal(len(self.identity))
+        if self.prior is not None and self.prior.n_principal is not None:
+            drawn[self.prior.n_principal :] = 0.0  # how drawings differ from people
+        return middle + drawn
 
     @classmethod
     def from_arrays(cls, mean: ArrayLike, faces: ArrayLike, **parts: Any) -> MorphableModel:

@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo.protocols.faces import FittedFace
 
 __all__ = ["FaceLabel", "FaceParse", "FaceParser", "HairFinder", "HairMask"]
@@ -98,6 +99,7 @@ class FaceParse:
     hair: HairMask | None = None
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
 
     def __post_init__(self) -> None:
         labels, confidence = np.array(self.labels), np.array(self.confidence, np.float32)

@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
+from toongeo.pipeline.landmarks.search.detector_file import packed_axes, unpacked_axes
+
 __all__ = ["principal_axes", "ridge_weights", "rounded", "signed"]
 
 _RIDGES = (0.03, 0.1, 0.3, 1.0)  # of the mean of the diagonal; the best on held-out renders is taken
@@ -31,7 +33,7 @@ def principal_axes(described: NDArray[np.float32], count: int) -> tuple[NDArray[
         centred = described[:, j].astype(np.float64) - mean[j]
         _, vectors = np.linalg.eigh(centred.T @ centred)
         axes[j] = signed(vectors[:, ::-1][:, :count])
-    return rounded(mean), rounded(axes)
+    return rounded(mean), unpacked_axes(*packed_axes(axes.astype(np.float32)))
 
 
 def ridge_weights(

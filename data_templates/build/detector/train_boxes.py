@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from detector.samples import Samples, mirrored
+from detector.samples import KINDS, Samples, mirrored
 from detector.views import view_classifiers, view_of
 from toongeo.pipeline.landmarks.search.face_boxes import (
     BOX_RADIUS_PX,
@@ -23,7 +23,7 @@ _RIDGE = 0.1
 _JITTER = 0.05  # of the radius, and of the log of the scale
 _RANDOM = 3  # windows beside each face
 _AWAY, _OTHER_SIZE = 0.6, 0.45  # radii, log of the scale: farther than that it is not the face
-_SEARCHED = 250  # renders searched for what is confused with faces
+_SEARCHED = 400  # renders, from all of them, searched for what is confused with faces
 _ROUNDS = 2
 _LEAST = -0.4  # score of a confusion worth learning from
 _REPEAT = 2  # how much more a confusion counts than a random window
@@ -33,19 +33,20 @@ def train_boxes(samples: Samples, clutter: list[NDArray[np.uint8]], seed: int = 
     """From renders, and grey pictures without a face."""
     rng = np.random.default_rng(seed)
     faces, views, negatives = [], [], []
-    for grey, points in zip(samples.grey, samples.landmarks, strict=True):
+    for grey, points, kind in zip(samples.grey, samples.landmarks, samples.kinds, strict=True):
         if rng.random() < 0.5:
             grey, points = mirrored(grey, points)
         box = box_of(points)
         moved = box + np.append(rng.normal(0, _JITTER, 2), rng.normal(0, _JITTER)) * box[2]
         faces.append(_window(grey, moved))
-        views.append(view_of(points))
+        views.append(view_of(points, KINDS[kind]))
         negatives += [_window(grey, _elsewhere(rng, box, grey.shape)) for _ in range(_RANDOM)]
     faces, views, negatives = np.array(faces), np.array(views), np.array(negatives)
     templates = BoxTemplates(*view_classifiers(faces, views, negatives, _RIDGE))
     confused: list[NDArray] = []
+    searched = slice(None, None, max(len(samples.grey) // _SEARCHED, 1))
     for _ in range(_ROUNDS):
-        for grey, points in zip(samples.grey[:_SEARCHED], samples.landmarks[:_SEARCHED], strict=True):
+        for grey, points in zip(samples.grey[searched], samples.landmarks[searched], strict=True):
             boxes = face_boxes(grey, templates, 6)
             confused += [_window(grey, b) for b in boxes if b[3] > _LEAST and not _is(b, box_of(points))]
         for grey in clutter:

@@ -74,7 +74,7 @@ def _judged(job: tuple[str, int]):
         return out, None
     patch = face_patch(grey, box_of(best.passes.points))
     start = applied(patch.matrix, best.passes.points)
-    passes = run_passes(patch.grey, start, parts.cascade)
+    passes = run_passes(patch.grey, start, parts.cascade, photo=best.photo)
     error = np.linalg.norm(applied(inverse(patch.matrix), passes.points) - truth, axis=1)
     eyes = max(np.linalg.norm(truth[36] - truth[45]), 0.5 * box[2])
     return out, (point_cues(passes, best.cues), error < _WITHIN * eyes)

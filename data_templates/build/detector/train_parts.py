@@ -12,17 +12,18 @@ from toongeo.pipeline.landmarks.search.cascade import PART_PX, PART_RADIUS_PX, C
 from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX, face_crop, point_descriptors
 from toongeo.pipeline.landmarks.search.frames import applied, box_matrix, box_of, inverse, similarity_onto
 
-__all__ = ["train_parts"]
+__all__ = ["PARTS", "WITHOUT_JAW", "train_parts"]
 
 Floats = NDArray[np.float64]
 
-_PARTS = (
+PARTS = (
     np.r_[17:22, 36:42],  # brow and eye of the right side
     np.r_[22:27, 42:48],  # of the left side
     np.r_[27:36],  # nose
     np.r_[48:68],  # mouth
     np.r_[0:17],  # jaw
 )
+WITHOUT_JAW = PARTS[:-1]
 # Radius of the ring and the two blurs, px of the part's crop: the last one sees the line of a lid.
 _JITTER, _SCALE_JITTER = 0.1, 0.08  # of the first start, as in `run_passes`
 _STAGES = ((12, 2.2, 4), (7, 1.4, 2.4), (4.5, 1.0, 1.6))
@@ -34,9 +35,9 @@ _PCA_SAMPLES = 1500
 
 
 def train_parts(
-    samples: Samples, held_out: Samples, cascade: Cascade, processes: int, say=print
+    samples: Samples, held_out: Samples, cascade: Cascade, processes: int, rows=PARTS, say=print
 ) -> tuple[PartCascade, ...]:
-    """From where the cascade of the whole face ends; `held_out` chooses the ridges.
+    """Parts of so many `rows`, from where the cascade of the whole face ends; `held_out` chooses the ridges.
 
     Of each two samples, drawings of one head, the second is mirrored.
     """
@@ -46,7 +47,7 @@ def train_parts(
     tests = [(k, -1) for k in range(len(held_out.grey))]
     ends = np.array(mapped(_end, jobs + tests, processes, together=32))
     _SHARED = samples, held_out, cascade, ends, jobs, tests
-    trained = mapped(_part, range(len(_PARTS)), processes)
+    trained = mapped(_part, list(enumerate(rows)), processes)
     for part, report in trained:
         say(f"part of {len(part.rows)} points: held out " + " -> ".join(f"{e:.4f}" for e in report), flush=True)
     return tuple(part for part, _ in trained)
@@ -55,10 +56,11 @@ def train_parts(
 _SHARED: tuple = ()  # what forked processes inherit instead of receiving it
 
 
-def _part(number: int) -> tuple[PartCascade, list[float]]:
+def _part(numbered: tuple[int, NDArray[np.int64]]) -> tuple[PartCascade, list[float]]:
     """One part, and its errors on held-out renders before the first stage and after each."""
     _, held_out, cascade, ends, jobs, tests = _SHARED
-    rng, rows = np.random.default_rng([11, number]), _PARTS[number]
+    number, rows = numbered
+    rng = np.random.default_rng([11, number])
     truth = np.array([_sample(job)[1][rows] for job in jobs])
     test_truth, eyes = np.array([_sample(job)[1][rows] for job in tests]), _eyes(held_out.landmarks)
     part = PartCascade(rows, _part_shape(truth, cascade.shape[rows]), ())

@@ -5,6 +5,7 @@ Constants were chosen as those of ``skin_samples``.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import cv2
@@ -48,7 +49,13 @@ def slopes(frame: Grey) -> list[Grey]:
 
 
 def picture_pose(
-    skin: SkinSamples, levels: list[Grey], start: LandmarkPose, *, least: float = 0.0, steps: Steps = (4, 3)
+    skin: SkinSamples,
+    levels: list[Grey],
+    start: LandmarkPose,
+    *,
+    least: float = 0.0,
+    steps: Steps = (4, 3),
+    held: Sequence[int] = (),
 ) -> LandmarkPose:
     """The scaled orthographic pose and the weights under which a face looks most like it does at rest.
 
@@ -66,6 +73,8 @@ def picture_pose(
         preferred to many then.
     steps : (int, int)
         By blur.
+    held : sequence of int
+        Weights that stay as they are at the start.
 
     References
     ----------
@@ -75,7 +84,7 @@ def picture_pose(
     pose = start
     for level, count in enumerate(steps):
         for _ in range(count):
-            pose = _step(skin, levels, level, pose, start.weights, least)
+            pose = _step(skin, levels, level, pose, start.weights, least, held)
     return pose
 
 
@@ -87,7 +96,13 @@ def picture_error(skin: SkinSamples, levels: list[Grey], pose: LandmarkPose, lev
 
 
 def _step(
-    skin: SkinSamples, levels: list[Grey], level: int, pose: LandmarkPose, before: Floats, least: float
+    skin: SkinSamples,
+    levels: list[Grey],
+    level: int,
+    pose: LandmarkPose,
+    before: Floats,
+    least: float,
+    held: Sequence[int],
 ) -> LandmarkPose:
     k = len(before)
     sight, lights = _sight(skin, levels[level], pose), _lights(skin, level)
@@ -105,6 +120,7 @@ def _step(
     H[range(k, k + _POSE), range(k, k + _POSE)] += 1.0  # a step of a radian or a width is unheard of
     g[:k] += before / _CALM**2 - _SPARSITY * (least == 0)
     low, high = np.r_[np.full(k, least), np.full(_POSE, -np.inf)], np.r_[np.ones(k), np.full(_POSE, np.inf)]
+    low[list(held)] = high[list(held)] = before[list(held)]
     x = bounded_quadratic(H, g, low, high, start)
     turn, growth, shift = x[k : k + 3], x[k + 3], x[k + 4 :]
     return LandmarkPose(

@@ -12,6 +12,7 @@ import numpy as np
 from toongeo.arrays import Bytes, Floats
 from toongeo.driving.landmark_pose import LandmarkPose, landmark_pose
 from toongeo.driving.landmark_rig import PerformerFace
+from toongeo.driving.picture.eye_aperture import eye_apertures
 from toongeo.driving.picture.picture_pose import Steps, picture_error, picture_pose, slopes
 from toongeo.driving.picture.skin_samples import FACE_PX, Grey, shrunken, skin_samples
 from toongeo.geometry.one_thread import one_thread
@@ -51,6 +52,7 @@ class SkinReader:
         self.skin = skin_samples(face, shrunken(frame, self._factor), at_rest)
         if len(self.skin.rest) < _FEWEST:
             raise ValueError(f"frame: expected {_FEWEST} places on the skin of a face, got {len(self.skin.rest)}")
+        self._eyes = eye_apertures(rig, slopes(shrunken(frame, self._factor))[-1], at_rest)
         self._at_rest = at_rest, self.smaller(landmarks)
         self._pose = at_rest
         self._landmarks: Floats | None = None
@@ -73,12 +75,19 @@ class SkinReader:
         return shrunken(frame, self._factor)
 
     def read(self, grey: Grey, landmarks: Floats, *, least: float = 0.0, steps: Steps = (4, 3)) -> LandmarkPose:
-        """The same from a frame as of :meth:`grey`."""
+        """The same from a frame as of :meth:`grey`.
+
+        How far the eyes are closed is told by what is seen between the lids; by the skin only where eye and lid look
+        alike, as where the eyes are closed in the frame of the samples.
+        """
         small = self.smaller(landmarks)
         with one_thread():
             levels = slopes(grey)
             start = min(self._starts(small), key=lambda pose: picture_error(self.skin, levels, pose))
-            self._pose = picture_pose(self.skin, levels, start, least=least, steps=steps)
+            start = self._blinked(levels[-1], start)
+            held = [eye.blink for eye in self._eyes]
+            pose = picture_pose(self.skin, levels, start, least=least, steps=steps, held=held)
+            self._pose = self._blinked(levels[-1], pose)
         self._landmarks = small
         return self._pose
 
@@ -102,3 +111,10 @@ class SkinReader:
             replace(found, weights=last.weights),
             found,
         ]
+
+    def _blinked(self, level: Grey, pose: LandmarkPose) -> LandmarkPose:
+        """The pose with the eyes as far closed as they look."""
+        weights = pose.weights.copy()
+        for eye in self._eyes:
+            weights[eye.blink] = eye.closed(level, pose)
+        return replace(pose, weights=weights)

@@ -2,7 +2,13 @@ import numpy as np
 import pytest
 
 from toongeo.pipeline.landmarks.search.cascade import Cascade, CascadeStage
-from toongeo.pipeline.landmarks.search.detector_file import detector_arrays, read_detector, shipped_detector
+from toongeo.pipeline.landmarks.search.detector_file import (
+    detector_arrays,
+    packed_axes,
+    read_detector,
+    shipped_detector,
+    unpacked_axes,
+)
 from toongeo.pipeline.landmarks.search.face_boxes import BoxTemplates, face_boxes
 from toongeo.pipeline.landmarks.search.face_crop import CROP_PX, RADIUS_PX, face_crop, point_descriptors
 from toongeo.pipeline.landmarks.search.flat_look import flat_look
@@ -16,6 +22,7 @@ from toongeo.pipeline.landmarks.search.frames import (
 )
 from toongeo.pipeline.landmarks.search.orientation_maps import DIRECTIONS, orientation_maps
 from toongeo.pipeline.landmarks.search.passes import face_patch, run_passes
+from toongeo.pipeline.landmarks.search.photo_share import photo_share
 from toongeo.pipeline.landmarks.search.template_residuals import template_residuals
 
 
@@ -161,6 +168,64 @@ def test_parts_go_on_by_themselves(render):
     )
     assert np.linalg.norm(refined[nose] - truth.landmarks[nose], axis=1).mean() < 3.5
     np.testing.assert_array_equal(moved[nose] - truth.landmarks[nose], np.tile([4.0, 3.0], (9, 1)))
+
+
+def test_parts_for_photographs_have_their_share(render):
+    """Between the two sets the points go straight; what only one set has is its own at every share."""
+    import cv2
+
+    truth, cascade = render(0), shipped_detector().cascade
+    grey = cv2.cvtColor(truth.picture, cv2.COLOR_RGB2GRAY)
+    none, half, whole = (cascade.refined(grey, truth.landmarks, share) for share in (0.0, 0.5, 1.0))
+    np.testing.assert_allclose(half, (none + whole) / 2, atol=1e-9)
+    assert np.abs(none - whole)[17:].max() > 0.1
+    np.testing.assert_array_equal(none[:17], whole[:17])
+
+
+def test_figures_look_unlike_people(render):
+    """Of which the parts for photographs keep away."""
+    import sys
+    from pathlib import Path
+
+    import cv2
+
+    sys.path.insert(0, str(Path(__file__).parents[4] / "data_templates" / "build"))
+    from figures import random_figure
+
+    parts = shipped_detector()
+
+    def share(picture, points):
+        grey = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
+        look = parts.verifier.look(grey, points, parts.cascade)
+        assert look.face > -0.5
+        return photo_share(flat_look(grey, points, parts.cascade.shape), look.figure)
+
+    people = [share(one.picture, one.landmarks) for one in (render(k, "person", "photo") for k in range(6))]
+    figures = [random_figure(np.random.default_rng([5, k])) for k in range(6)]
+    figures = [share(one.picture.astype(np.uint8), one.landmarks) for one in figures]
+    assert np.median(people) > 0.5 and np.median(figures) < 0.1
+
+
+def test_the_verifier_tells_points_from_others(render):
+    import cv2
+
+    parts = shipped_detector()
+    for k in range(4):
+        one = render(k)
+        grey = cv2.cvtColor(one.picture, cv2.COLOR_RGB2GRAY)
+        own, aside = (parts.verifier.look(grey, one.landmarks + off, parts.cascade).face for off in (0.0, 25.0))
+        assert own > 0 > aside
+
+
+def test_axes_are_packed_to_bytes_and_back(rng):
+    axes = np.linalg.qr(rng.normal(size=(5, 136, 40)))[0].astype(np.float32)
+    packed, units = packed_axes(axes)
+    again = unpacked_axes(packed, units)
+    assert packed.dtype == units.dtype == np.int8
+    assert np.linalg.norm(again - axes) < 0.02 * np.linalg.norm(axes)
+    np.testing.assert_array_equal(packed_axes(again)[0], packed)
+    np.testing.assert_array_equal(unpacked_axes(*packed_axes(again)), again)
+    assert not unpacked_axes(*packed_axes(np.zeros_like(axes))).any()
 
 
 def test_lines_between_flat_colours_look_flat_whatever_their_contrast(rng):

@@ -77,13 +77,15 @@ class Cascade:
 
     A cascade of regressions on local descriptors after X. Xiong, F. De la Torre, "Supervised descent method", CVPR
     2013; here the crop is aligned anew, rotation included, before each stage. The last stages see one part of the face
-    each, aligned by itself: a caricature's mouth of twice the usual size looks like any other then.
+    each, aligned by itself: a caricature's mouth of twice the usual size looks like any other then. There are two sets:
+    `parts` learnt from people and figures, `photo_parts` without figures drawn in the plane.
     """
 
     shape: NDArray[np.float64]
     shape_axes: NDArray[np.float32]
     stages: tuple[CascadeStage, ...]
     parts: tuple[PartCascade, ...] = ()
+    photo_parts: tuple[PartCascade, ...] = ()
 
     def rough(self, grey: np.ndarray, start: NDArray[np.float64], stages: int) -> NDArray[np.float64]:
         """Points (68, 2) px after the first stages, from the mean shape under a similarity (2, 3) picture -> crop."""
@@ -95,14 +97,18 @@ class Cascade:
         return applied(inverse(matrix), points)
 
     def run(self, grey: np.ndarray, start: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points (68, 2) px of the picture after all stages and all parts."""
+        """Points (68, 2) px of the picture after all stages and all `parts`."""
         return self.refined(grey, self.rough(grey, start, len(self.stages)))
 
-    def refined(self, grey: np.ndarray, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points (68, 2) px after each part went on by itself from where its points are."""
+    def refined(self, grey: np.ndarray, points: NDArray[np.float64], photo: float = 0.0) -> NDArray[np.float64]:
+        """Points (68, 2) px after each part went on by itself from where its points are; `photo_parts`, one for each of
+        the first parts, have the share `photo` in [0, 1]."""
         out = points.copy()
-        for part in self.parts:
-            out[part.rows] = part.run(grey, points[part.rows])
+        for k, part in enumerate(self.parts):
+            share = photo if k < len(self.photo_parts) else 0.0
+            start = points[part.rows]
+            here = part.run(grey, start) if share < 1 else start
+            out[part.rows] = here if not share else here + share * (self.photo_parts[k].run(grey, start) - here)
         return out
 
 

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from toongeo.pipeline.landmarks.search.orientation_maps import orientation_maps
 
-__all__ = ["CROP_PX", "RADIUS_PX", "SAMPLES", "face_crop", "point_descriptors", "whole_descriptor"]
+__all__ = ["CROP_PX", "RADIUS_PX", "SAMPLES", "face_crop", "point_descriptors"]
 
 CROP_PX = 160
 RADIUS_PX = 38.0  # root mean square radius of the 68 points in the crop
@@ -19,8 +19,6 @@ _ANGLES = np.arange(_RING) * (2 * np.pi / _RING)
 _UNIT = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 _OFFSETS = np.vstack([np.zeros((1, 2)), _INNER_RING * _UNIT, _UNIT])
 _FLOOR = 2.0  # grey levels: below this gradients are noise
-_WHOLE_CELL = 8
-_WHOLE_FLOOR = 1.0
 
 
 def face_crop(grey: np.ndarray, matrix: NDArray[np.float64], size: int = CROP_PX) -> np.ndarray:
@@ -48,18 +46,3 @@ def point_descriptors(
         out[:, split:, 4 * k : 4 * k + 4] = far[k].reshape(-1, 4)[index[:, split:]]
     rows = np.sqrt(np.maximum(out.reshape(len(points), -1), 0))
     return rows / (np.sqrt(np.einsum("kd,kd->k", rows, rows)) + np.float32(_FLOOR))[:, None]
-
-
-def whole_descriptor(crop: np.ndarray) -> NDArray[np.float32]:
-    """(4000,) float32: orientation histograms of the crop in cells of 8 and 16 px, normalised by their surroundings."""
-    fine = np.concatenate(orientation_maps(crop, _WHOLE_CELL, _PREBLUR), axis=2)
-    side = len(fine) // 2
-    coarse = fine.reshape(side, 2, side, 2, 8).mean(axis=(1, 3))
-    return np.concatenate([_normalised(fine, 5).ravel(), _normalised(coarse, 3).ravel()])
-
-
-def _normalised(histograms: NDArray[np.float32], window: int) -> NDArray[np.float32]:
-    energy = cv2.blur(
-        np.einsum("yxk,yxk->yx", histograms, histograms), (window, window), borderType=cv2.BORDER_REPLICATE
-    )
-    return np.minimum(np.sqrt(histograms / (np.sqrt(np.maximum(energy, 0)) + _WHOLE_FLOOR)[..., None]), 1.5)

@@ -14,6 +14,7 @@ from toongeo.pipeline.landmarks.search.face_judge import face_cues, point_cues
 from toongeo.pipeline.landmarks.search.flat_look import flat_look
 from toongeo.pipeline.landmarks.search.frames import applied, box_matrix, box_of, composed, inverse
 from toongeo.pipeline.landmarks.search.passes import Passes, face_patch, run_passes
+from toongeo.pipeline.landmarks.search.photo_share import photo_share
 
 __all__ = ["Candidate", "FoundFace", "candidate_faces", "find_faces"]
 
@@ -23,8 +24,8 @@ _ROUGH_STAGES = 2  # of the cascade, before the verifier looks for the first tim
 _KEPT = 4  # boxes that the whole cascade is run on, at least
 _PLAIN = 0.5  # the sum of the first scores at which others are looked at too: there may be many faces
 # Chances of a face: the least one, and that beside a sure face. Chosen on renders and on photographs without a face.
-_FACE, _SURE, _BESIDE = 0.8, 0.9, 0.9
-_PLACED = 0.35  # mean confidence of inner points; of drawn renders, points with less were off the face
+_FACE, _SURE, _BESIDE = 0.7, 0.9, 0.9
+_PLACED = 0.6  # mean confidence of inner points; on strange renders hardly a face with less had its points within 8 %
 _PLACED_BESIDE = 0.6  # of that of the face whose points are surest
 _OVERLAP = 0.7  # radii between the middles of faces that cannot both be
 _SAME = 0.15  # radii between the points of what would end as one face
@@ -32,10 +33,11 @@ _SAME = 0.15  # radii between the points of what would end as one face
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """Points after passes from three starts, and the cues of the face (6,)."""
+    """Points after passes from three starts, the cues of the face (6,), and its `photo_share`."""
 
     passes: Passes
     cues: NDArray[np.float64]
+    photo: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +101,7 @@ def _rough_faces(grey: np.ndarray, parts: DetectorParts, tilt: float) -> list[_R
         patch = face_patch(grey, np.append(middle, box[2]))
         start = composed(composed(box_matrix(box, CROP_PX, RADIUS_PX), turn), inverse(patch.matrix))
         points = parts.cascade.rough(patch.grey, start, _ROUGH_STAGES)
-        verified = parts.verifier.score(patch.grey, points, parts.cascade.shape)
+        verified = parts.verifier.look(patch.grey, points, parts.cascade).face
         every.append(_Rough(applied(inverse(patch.matrix), points), float(box[3]), verified + float(box[3])))
     kept: list[_Rough] = []
     for rough in sorted(every, key=lambda entry: -entry.score):
@@ -112,17 +114,17 @@ def _rough_faces(grey: np.ndarray, parts: DetectorParts, tilt: float) -> list[_R
 def _checked(grey: np.ndarray, rough: _Rough, parts: DetectorParts) -> Candidate:
     patch = face_patch(grey, box_of(rough.points))
     passes = run_passes(patch.grey, applied(patch.matrix, rough.points), parts.cascade, first_look=True)
-    verified = parts.verifier.score(patch.grey, passes.points, parts.cascade.shape)
+    look = parts.verifier.look(patch.grey, passes.points, parts.cascade)
     back = Passes(applied(inverse(patch.matrix), passes.points), passes.spread)
     flat = flat_look(patch.grey, passes.points, parts.cascade.shape)
-    return Candidate(back, face_cues(verified, rough.box_score, flat, passes))
+    return Candidate(back, face_cues(look.face, rough.box_score, flat, passes), photo_share(flat, look.figure))
 
 
 def _finished(grey: np.ndarray, candidate: Candidate, chance: float, parts: DetectorParts) -> FoundFace:
     """All passes, from where the first ones ended."""
     points = candidate.passes.points
     patch = face_patch(grey, box_of(points))
-    passes = run_passes(patch.grey, applied(patch.matrix, points), parts.cascade)
+    passes = run_passes(patch.grey, applied(patch.matrix, points), parts.cascade, photo=candidate.photo)
     confidence = parts.judge.point_chances(point_cues(passes, candidate.cues))
     return FoundFace(applied(inverse(patch.matrix), passes.points), confidence, chance)
 

@@ -10,6 +10,7 @@ from toongeo.pipeline.landmarks.search.find_faces import FoundFace
 from toongeo.pipeline.landmarks.search.flat_look import flat_look
 from toongeo.pipeline.landmarks.search.frames import applied, box_of, inverse, similarity_onto
 from toongeo.pipeline.landmarks.search.passes import face_patch, run_passes
+from toongeo.pipeline.landmarks.search.photo_share import photo_share
 
 __all__ = ["flowed_points", "follow_face"]
 
@@ -30,12 +31,12 @@ def follow_face(
     """
     patch = face_patch(grey, box_of(start))
     passes = run_passes(patch.grey, applied(patch.matrix, start), parts.cascade, first_look=True)
-    verified = parts.verifier.score(patch.grey, passes.points, parts.cascade.shape)
+    look = parts.verifier.look(patch.grey, passes.points, parts.cascade)
     flat = flat_look(patch.grey, passes.points, parts.cascade.shape)
-    cues = face_cues(verified, _BOX_SCORE, flat, passes)
+    cues, photo = face_cues(look.face, _BOX_SCORE, flat, passes), photo_share(flat, look.figure)
     if thorough:
-        passes = run_passes(patch.grey, passes.points, parts.cascade)
-    points = passes.points if thorough else parts.cascade.refined(patch.grey, passes.points)
+        passes = run_passes(patch.grey, passes.points, parts.cascade, photo=photo)
+    points = passes.points if thorough else parts.cascade.refined(patch.grey, passes.points, photo)
     confidence = parts.judge.point_chances(point_cues(passes, cues))
     return FoundFace(applied(inverse(patch.matrix), points), confidence, parts.judge.face_chance(cues))
 

@@ -59,11 +59,13 @@ def face_patch(grey: np.ndarray, box: NDArray[np.float64]) -> FacePatch:
     return FacePatch(np.ascontiguousarray(small), matrix)
 
 
-def run_passes(grey: np.ndarray, points: NDArray[np.float64], cascade: Cascade, *, first_look: bool = False) -> Passes:
+def run_passes(
+    grey: np.ndarray, points: NDArray[np.float64], cascade: Cascade, *, photo: float = 0.0, first_look: bool = False
+) -> Passes:
     """The cascade from five starts about a face found roughly at `points` (68, 2) px, and from their mirror images.
 
-    The parts go on from the median of those, in the picture and in its mirror image. The `first_look` is from three
-    starts, not mirrored, and ends before the parts.
+    The parts go on from the median of those, in the picture and in its mirror image; `photo` is the share of those that
+    saw no figures. The `first_look` is from three starts, not mirrored, and ends before the parts.
     """
     start, stages = similarity_onto(points, cascade.shape), len(cascade.stages)
     if first_look:
@@ -73,8 +75,8 @@ def run_passes(grey: np.ndarray, points: NDArray[np.float64], cascade: Cascade, 
     start = similarity_onto(_mirrored(points, grey), cascade.shape)
     found += [_mirrored(cascade.rough(flipped, _moved(start, move), stages), grey) for move in _STARTS]
     rough = _gathered(found)
-    here = cascade.refined(grey, rough.points)
-    there = _mirrored(cascade.refined(flipped, _mirrored(rough.points, grey)), grey)
+    here = cascade.refined(grey, rough.points, photo)
+    there = _mirrored(cascade.refined(flipped, _mirrored(rough.points, grey), photo), grey)
     apart = np.linalg.norm(here - there, axis=1) / 2 / box_of(rough.points)[2]
     return Passes((here + there) / 2, rough.spread + apart)
 
