@@ -4,7 +4,15 @@ __all__ = ["REQUIREMENTS", "missing_extra"]
 
 # As in pyproject.toml, which a test compares. The packages themselves are named, not "toongeo[usd]": that works from a
 # checkout too, and wherever the library came from.
-REQUIREMENTS = {"usd": "usd-core>=24.11", "serve": "websockets>=14", "notebook": "anywidget>=0.9.13"}
+REQUIREMENTS = {
+    "usd": "usd-core>=24.11",
+    "serve": "websockets>=14",
+    "notebook": "anywidget>=0.9.13",
+    "models": "h5py>=3.11",
+    "dlib": "dlib>=19.24",
+    "mediapipe": "mediapipe>=0.10.14",
+    "onnx": "onnxruntime>=1.18",
+}
 
 
 def missing_extra(what: str, extra: str) -> str:

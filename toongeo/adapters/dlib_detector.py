@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._extras import missing_extra
 from toongeo.protocols import LandmarkDetection
 
 __all__ = ["DlibDetector"]
@@ -52,7 +53,7 @@ class DlibDetector:
         try:
             import dlib
         except ImportError as error:
-            raise ImportError("landmarks by dlib need dlib: pip install toongeo[dlib]") from error
+            raise ImportError(missing_extra("a dlib detector", "dlib")) from error
         if not Path(path).is_file():
             raise FileNotFoundError(f"path: no shape predictor {path}")
         if not 0 <= confidence <= 1:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._extras import missing_extra
 from toongeo.io import ibug_points
 from toongeo.protocols import LandmarkDetection
 
@@ -45,7 +46,7 @@ class MediapipeDetector:
         try:
             import mediapipe
         except ImportError as error:
-            raise ImportError("landmarks by MediaPipe need mediapipe: pip install toongeo[mediapipe]") from error
+            raise ImportError(missing_extra("a MediaPipe detector", "mediapipe")) from error
         if not Path(path).is_file():
             raise FileNotFoundError(f"path: no task {path}")
         if not 0 <= confidence <= 1:

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from toongeo._extras import missing_extra
 from toongeo.protocols import Coefficients
 
 __all__ = ["OnnxRegressor"]
@@ -66,7 +67,7 @@ class OnnxRegressor:
         try:
             import onnxruntime
         except ImportError as error:
-            raise ImportError("networks in ONNX need onnxruntime: pip install toongeo[onnx]") from error
+            raise ImportError(missing_extra("a network in ONNX", "onnx")) from error
         if not Path(path).is_file():
             raise FileNotFoundError(f"path: no network {path}")
         unknown = sorted(set(outputs) - set(_PARTS))

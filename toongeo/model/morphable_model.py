@@ -220,8 +220,11 @@ class MorphableModel:
         >>> model.vertices(model.sample(np.random.default_rng(0), sigma=0.8)).shape == model.mean.shape
         True
         """
-        middle = 0.0 if self.prior is None else self.prior.mean
-        return middle + sigma * rng.standard_normal(len(self.identity))
+        middle = np.zeros(len(self.identity)) if self.prior is None else self.prior.mean
+        drawn = sigma * rng.standard_normal(len(self.identity))
+        if self.prior is not None and self.prior.n_principal is not None:
+            drawn[self.prior.n_principal :] = 0.0  # how drawings differ from people
+        return middle + drawn
 
     @classmethod
     def from_arrays(cls, mean: ArrayLike, faces: ArrayLike, **parts: Any) -> MorphableModel:

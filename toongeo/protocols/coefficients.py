@@ -56,12 +56,13 @@ class Regressor(Protocol):
 
     Examples
     --------
+    >>> from toongeo import default_model
     >>> from toongeo.testing import check_regressor
     >>> class Widest:
     ...     "The first mode of identity is how wide a face is."
     ...     def __call__(self, img, landmarks):
     ...         width, height = np.nanmax(landmarks, 0) - np.nanmin(landmarks, 0)
-    ...         identity = np.zeros(80)
+    ...         identity = np.zeros(len(default_model().identity))
     ...         identity[0] = np.clip(width / height - 1, -1, 1)
     ...         return Coefficients(identity=identity)
     >>> check_regressor(Widest(), picture=False)

@@ -30,7 +30,8 @@ def check_regressor(regressor: Regressor, *, model: MorphableModel | None = None
 
     Examples
     --------
-    >>> check_regressor(lambda img, landmarks: Coefficients(identity=np.zeros(80)))
+    >>> identity = np.zeros(len(default_model().identity))
+    >>> check_regressor(lambda img, landmarks: Coefficients(identity=identity))
     """
     model = model or default_model()
     img, points = (np.array(part) for part in example())

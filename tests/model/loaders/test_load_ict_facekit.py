@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from toongeo.model import load_model
 from toongeo.model.ibug68 import PARTS
 from toongeo.model.loaders.load_ict_facekit import load_ict_facekit
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
@@ -70,3 +71,38 @@ def test_another_topology_is_refused(path, tmp_path):
     np.savez(tmp_path / "cut.npz", **{**arrays, "neutral": arrays["neutral"][:100]})
     with pytest.raises(ValueError, match="quads: expected|identity_q: expected"):
         load_ict_facekit(tmp_path / "cut.npz")
+
+
+def test_the_published_folder_is_the_archive(shared, ict, tmp_path):
+    folder = shared / "data" / "models" / "ict_facekit"
+    model = load_model(folder / "FaceXModel", cache=tmp_path / "cache.npz")
+    assert (tmp_path / "cache.npz").is_file() and model.expression_names == (
+        "eyeBlinkLeft",
+        "jawOpen",
+        "mouthSmileRight",
+    )
+    np.testing.assert_allclose(model.mean, ict.mean, atol=2e-4)
+    np.testing.assert_array_equal(model.faces, ict.faces)
+    np.testing.assert_array_equal(model.quads, ict.quads)
+    np.testing.assert_array_equal(model.landmarks, ict.landmarks)
+    np.testing.assert_allclose(model.identity, ict.identity[:4], atol=2e-3)
+    for name, shape in zip(model.expression_names, model.expression, strict=True):
+        np.testing.assert_allclose(shape, ict.expression[ict.expression_index(name)], atol=2e-3)
+    again = load_model(folder, cache=tmp_path / "cache.npz")
+    np.testing.assert_array_equal(again.identity, model.identity)
+    bare = load_model(folder)  # without a cache nothing is written
+    np.testing.assert_allclose(bare.identity, model.identity, atol=2e-3)
+
+
+def test_a_folder_that_does_not_fit_is_refused(shared, tmp_path):
+    source = shared / "data" / "models" / "ict_facekit" / "FaceXModel"
+    with pytest.raises(ValueError, match=r"expected generic_neutral_mesh.obj in it"):
+        load_model(tmp_path, format="ict")
+    for name in ("generic_neutral_mesh.obj", "vertex_indices.json"):
+        (tmp_path / name).write_bytes((source / name).read_bytes())
+    (tmp_path / "jawOpen.obj").write_text("v 0 0 0\nv 1 2 3\nv 0 1 0\nf 1 2 3\n")
+    with pytest.raises(ValueError, match="jawOpen.obj: expected 26719 vertices as of the neutral face, got 3"):
+        load_model(tmp_path)
+    (tmp_path / "jawOpen.obj").write_text("v 0 0\n")
+    with pytest.raises(ValueError, match=r"expected 3 coordinates"):
+        load_model(tmp_path)

@@ -128,6 +128,8 @@ def test_the_template_comes_back_with_all_its_parts(model, tmp_path):
     assert again.has("eyes", "teeth_upper", "jawOpen", "uv", "quads", "contours", "landmarks")
     np.testing.assert_array_equal(again.eyes[1].centre_modes, model.eyes[1].centre_modes)
     np.testing.assert_array_equal(again.prior.landmark_covariance, model.prior.landmark_covariance)
+    np.testing.assert_array_equal(again.prior.scan_offsets, model.prior.scan_offsets)
+    assert again.prior.n_principal == model.prior.n_principal
     for name, mask in model.regions.items():
         np.testing.assert_array_equal(again.regions[name], mask)
     for one, other in zip(model.contour_lines, again.contour_lines, strict=True):

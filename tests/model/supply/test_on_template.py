@@ -14,7 +14,7 @@ def people(model):
     used, faces = np.unique(model.faces[model.region("face")[model.faces].all(1)], return_inverse=True)
     new = np.full(len(model.mean), -1)
     new[used] = np.arange(len(used))
-    shift = np.random.default_rng(1).normal(0, 0.7, 80)
+    shift = np.random.default_rng(1).normal(0, 0.7, len(model.identity))
     jaw = model.landmarks.copy()
     jaw[:17] = model.landmarks[17]
     colour = np.random.default_rng(2).uniform(0.3, 0.7, (len(used), 3))

@@ -73,9 +73,8 @@ def save_model(model: MorphableModel, path: str | Path) -> None:
         arrays |= {f"eye{k}_{part.name}": getattr(eye, part.name) for part in fields(eye)}
     for name, value in (("skinning", model.skinning), ("prior", model.prior)):
         if value is not None:
-            arrays |= {
-                f"{name}_{part.name}": getattr(value, part.name) for part in fields(value) if part.name != "names"
-            }
+            given = {part.name: getattr(value, part.name) for part in fields(value) if part.name != "names"}
+            arrays |= {f"{name}_{part}": array for part, array in given.items() if array is not None}
     stream = io.BytesIO()
     np.savez(stream, **arrays)
     atomic_write({path: stream.getvalue()})
@@ -107,7 +106,7 @@ def load_own_model(path: Path) -> MorphableModel:
             contour_lines=_lines(z),
             eyes=tuple(_eye(z, k) for k in range(int(header["eyes"]))),
             skinning=_skinning(z, header["joints"]),
-            prior=FacePrior(**_parts(z, "prior_")) if header["prior"] else None,
+            prior=_prior(z) if header["prior"] else None,
         )
         _check(model)
         return model
@@ -132,6 +131,13 @@ def _lines(z: dict[str, NDArray]) -> tuple[NDArray, ...]:
 def _eye(z: dict[str, NDArray], k: int) -> EyeballTemplate:
     parts = _parts(z, f"eye{k}_")
     return EyeballTemplate(**{**parts, **{name: float(parts[name]) for name in _EYE_NUMBERS}})
+
+
+def _prior(z: dict[str, NDArray]) -> FacePrior:
+    parts = _parts(z, "prior_")
+    if "n_principal" in parts:
+        parts["n_principal"] = int(parts["n_principal"])
+    return FacePrior(**parts)
 
 
 def _skinning(z: dict[str, NDArray], names: list[str] | None) -> Skinning | None:

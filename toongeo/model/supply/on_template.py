@@ -192,4 +192,4 @@ def _colours(template: MorphableModel, model: MorphableModel, mean: NDArray[np.f
 
 def _prior(prior: FacePrior, n_modes: int) -> FacePrior:
     """Annotators see the template's landmarks where they did; the mean of the model is its likeliest face."""
-    return FacePrior(np.zeros(n_modes), prior.landmark_offsets, prior.landmark_covariance)
+    return replace(prior, mean=np.zeros(n_modes), n_principal=None)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo._extras import missing_extra
 from toongeo.model.loaders.files.refusing import refusing
 
 __all__ = ["read_h5"]
@@ -69,5 +70,5 @@ def _h5py() -> ModuleType:
     try:
         import h5py
     except ImportError as error:
-        raise ImportError("models in HDF5 need h5py: pip install toongeo[models]") from error
+        raise ImportError(missing_extra("a model in HDF5", "models")) from error
     return h5py
