@@ -1,6 +1,7 @@
 """Alignment of the coarse face with its landmarks: what is reached, what folds, and what is foretold of hidden points.
 
-usage: python benchmarks/alignment.py [FOLDER ...]   (pictures with .pts or .txt beside them; default: the examples)
+usage: python benchmarks/alignment.py [--left-out] [FOLDER ...]   (pictures with .pts or .txt beside them; default: the
+examples); with --left-out only the errors of the landmarks left out, by the parts of the face
 
 For each picture: the greatest error of an anchor, the triangles of the face that intersect others, and the mean error
 of every third landmark, left out of fit and alignment (mean of the three ways to do so); all errors in percent of the
@@ -26,6 +27,7 @@ from toongeo.geometry.rotations.similarity import similarity
 from toongeo.metrics import mesh_quality
 from toongeo.model.anatomy.visible_contour import visible_contour
 from toongeo.model.ibug68 import OUTER_EYES
+from toongeo.model.ibug68 import PARTS as LANDMARK_PARTS
 from toongeo.render import ScaledOrthographicCamera
 
 PLAIN = {"flow": False, "slide": False}
@@ -62,6 +64,33 @@ def held_out(landmarks: np.ndarray) -> np.ndarray:
         faces = fit, align_face(fit, fewer, **PLAIN), align_face(fit, fewer)
         total += [errors(face, landmarks)[hidden].mean() for face in faces]
     return total / PHASES
+
+
+def left_out_rows(found: list[Picture]) -> None:
+    """Errors of the landmarks left out of alignment, every third in three ways, beside the middle of two neighbours."""
+    table = []
+    for picture in found:
+        landmarks = read_landmarks(picture.landmarks)
+        right, left = landmarks[list(OUTER_EYES)]
+        middle = np.full((68, 2), np.nan)
+        middle[1:16] = (landmarks[:15] + landmarks[2:17]) / 2
+        aligned = np.full(68, np.nan)
+        for phase in range(PHASES):
+            hidden = np.arange(68) % PHASES == phase
+            fewer = np.where(hidden[:, None], np.nan, landmarks)
+            aligned[hidden] = errors(align_face(fit_3dmm(None, fewer), fewer), landmarks)[hidden]
+        simple = 100 * np.linalg.norm(middle - landmarks, axis=1) / np.linalg.norm(left - right)
+        table.append([aligned, simple])
+        print(f"| {picture.name} | {aligned.mean():.2f} |", flush=True)
+    aligned, simple = np.array(table).transpose(1, 0, 2)
+    print("| part | left out, % of the outer-eye distance |\n|---|---|")
+    for part, points in LANDMARK_PARTS.items():
+        print(f"| {part} | {aligned[:, list(points)].mean():.2f} |")
+    print(f"| points 1-15 of the jaw | {aligned[:, 1:16].mean():.2f} |")
+    print(f"| the middle of their neighbours | {simple[:, 1:16].mean():.2f} |")
+    print(f"| all | {aligned.mean():.2f} |")
+    print(f"{(aligned.mean(axis=1) <= 3).sum()} of {len(aligned)} pictures at most 3 %.")
+    print(roles("alignment", [picture.name for picture in found]))
 
 
 def picture_rows(found: list[Picture]) -> None:
@@ -185,6 +214,9 @@ def times() -> None:
 
 
 def main() -> None:
+    if "--left-out" in sys.argv:
+        left_out_rows(pictures([argument for argument in sys.argv[1:] if argument != "--left-out"]))
+        return
     picture_rows(pictures(sys.argv[1:]))
     known_depth()
     wide_mouths()

@@ -10,7 +10,8 @@ from the mask that the program finds, where it trusts it. Of each picture:
 - through: pixels where skin lies up to 5 mm before hair, in patches that do not touch the hair's edge or reach more
   than 8 mm from it, in % of the hair's pixels; the worst of 12 views around the head.
 - before: in the picture's view, cells of 1 mm of hair where the head lies more than 1 mm before it, in %, the worst of
-  the rig's expressions and the presets.
+  the rig's expressions and the presets; then the same without hair that lies more than 30 mm behind the skin: that
+  hangs behind the head, and a cheek that is puffed out beside it covers it, and does not come through.
 - moved: by how much visible landmarks moved to make room, mm.
 - open: edges that are not of two triangles; crossing: pairs of triangles that intersect.
 - seconds: of CPU, of the stage (room, shell and texture), best of three.
@@ -39,6 +40,7 @@ from toongeo.render import Fragments, ScaledOrthographicCamera, interpolate, ras
 
 VIEWS, SIDE = 12, 320
 NEAR_MM, EDGE_MM, BEFORE_MM = 5.0, 8.0, 1.0
+BEHIND_MM = 30.0  # half of the depth of a cheek: hair so far behind the skin does not lie on it
 SIX = ("anger", "disgust", "fear", "sadness", "smile", "surprise")
 HEAD = [label for label in FaceLabel if label != FaceLabel.BACKGROUND]
 
@@ -92,8 +94,9 @@ def through(avatar: Avatar, hair: Hair) -> float:
     return worst
 
 
-def before(avatar: Avatar, hair: Hair, mask: np.ndarray) -> tuple[float, str]:
-    """Worst share of cells of hair, %, where the head lies before it in an expression, and its name."""
+def before(avatar: Avatar, hair: Hair, mask: np.ndarray) -> tuple[float, str, float]:
+    """Worst share of cells of hair, %, where the head lies before it in an expression, its name, and the worst share
+    where it lies closely before it."""
     millimetres = 1 / float(np.linalg.norm(avatar.face.camera.jacobian(np.zeros((1, 3)))[0, 0]))
     shape = (int(mask.shape[0] * millimetres) + 1, int(mask.shape[1] * millimetres) + 1)
     cells = cv2.resize(mask.astype(np.uint8), shape[::-1], interpolation=cv2.INTER_AREA)
@@ -101,13 +104,14 @@ def before(avatar: Avatar, hair: Hair, mask: np.ndarray) -> tuple[float, str]:
     camera = avatar.face.camera.cropped(np.zeros(2), millimetres)
     front = drawn(camera, hair.vertices, hair.faces, shape)[1]
     cells &= np.isfinite(front)
-    F, worst = outer_faces(avatar), (0.0, "none")
+    F, worst, near = outer_faces(avatar), (0.0, "none"), 0.0
     for name in (*avatar.names, *SIX):
         V = avatar.vertices(PRESETS[name] if name in SIX else {name: 1.0})
         skin = drawn(camera, V, F, shape)[1]
-        share = 100 * float((cells & (skin > front + BEFORE_MM)).sum()) / max(1, int(cells.sum()))
-        worst = max(worst, (share, name))
-    return worst
+        over = cells & (skin > front + BEFORE_MM)
+        worst = max(worst, (100 * float(over.sum()) / max(1, int(cells.sum())), name))
+        near = max(near, 100 * float((over & (skin < front + BEHIND_MM)).sum()) / max(1, int(cells.sum())))
+    return *worst, near
 
 
 def open_edges(F: np.ndarray) -> int:
@@ -151,10 +155,10 @@ def measured(picture: Path, masks: Path, found: bool) -> str:
         started = time.process_time()
         add_hair(img, painted.face, painted.rig, avatar.parse)
         seconds.append(time.process_time() - started)
-    share, name = before(avatar, hair, own)
+    share, name, near = before(avatar, hair, own)
     return (
         f"{stem:<26}{iou(visible, large[0]):6.3f}{iou(visible, large[1]):7.3f}{silhouettes[0]:8.3f} ->"
-        f"{silhouettes[1]:6.3f}{through(avatar, hair):9.2f}{share:8.3f} {name:<18}{moved:6.2f}"
+        f"{silhouettes[1]:6.3f}{through(avatar, hair):9.2f}{share:8.3f} {name:<18}{near:6.3f}{moved:6.2f}"
         f"{open_edges(hair.faces):6d}{len(self_intersections(hair.vertices, hair.faces)):9d}{len(hair.faces):10d}"
         f"{min(seconds):9.2f}"
     )
@@ -164,8 +168,8 @@ def main() -> None:
     arguments = [a for a in sys.argv[1:] if not a.startswith("--")]
     masks, pictures = Path(arguments[0]), [Path(name) for name in arguments[1:]]
     print(
-        f"{'picture':<26}{'IoU':>6}{'own':>7}{'silhouette':>17}{'through %':>9}{'before %':>8} {'in':<18}{'moved':>6}"
-        f"{'open':>6}{'crossing':>9}{'triangles':>10}{'seconds':>9}"
+        f"{'picture':<26}{'IoU':>6}{'own':>7}{'silhouette':>17}{'through %':>9}{'before %':>8} {'in':<18}{'near':>6}"
+        f"{'moved':>6}{'open':>6}{'crossing':>9}{'triangles':>10}{'seconds':>9}"
     )
     for picture in pictures:
         print(measured(picture, masks, "--found" in sys.argv), flush=True)

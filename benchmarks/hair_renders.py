@@ -12,6 +12,8 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 
 import sys
 
+sys.path.append(sys.path.pop(0))  # of two modules `noise` that of the renderers
+
 import numpy as np
 from random_picture import HAIR, HAT, random_picture
 from rendered_face import rendered_face

@@ -1,11 +1,12 @@
 """How soon the page of an avatar shows its first frame, and how large displays in notebooks are.
 
-usage: python benchmarks/page.py
-(needs Chromium, and `npm ci --prefix tests/web`)
+usage: python benchmarks/page.py [--realtime]
+(needs Chromium, and `npm ci --prefix tests/web`; --realtime lets the browser go before all else on a busy machine, with
+`chrt`, as root)
 
-first frame, s: from the address to the first frame, by the page's own clock, in Chromium without a graphics card;
-meant for a machine that does nothing else. CPU s until then, of the page's process and of the one that stands in for
-the graphics card: these do not depend on how busy the machine is.
+first frame, s: from the address to the first frame, by the page's own clock, in Chromium without a graphics card. CPU
+s until then, of the page's process and of the one that stands in for the graphics card: these do not depend on how
+busy the machine is.
 """
 
 import os
@@ -15,6 +16,7 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
 
 import json
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 from statistics import median
@@ -37,7 +39,8 @@ def first_frame(page: Path, folder: Path) -> tuple[float, float, float]:
     """Seconds to the first frame, and CPU seconds of the page and of the renderer in software."""
     (folder / "steps.json").write_text(json.dumps(STEPS))
     command = ["node", ROOT / "tests" / "web" / "browse.mjs", page.as_uri(), folder / "steps.json", folder]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    first = ["chrt", "-r", "5"] if "--realtime" in sys.argv else []
+    done = subprocess.run([*first, *command], check=True, capture_output=True, text=True)
     spent, seconds = json.loads(done.stdout)["results"]
     return seconds, spent["renderer"], spent["GPU"]
 

@@ -1,5 +1,7 @@
 """The library as users have it: imported, in a wheel, installed in place."""
 
+import json
+import re
 import subprocess
 import sys
 import zipfile
@@ -39,6 +41,16 @@ def test_a_verb_wins_over_the_module_of_its_name():
     assert run(sys.executable, "-c", code, cwd=ROOT).split() == ["True", "Avatar"]
 
 
+def test_the_bill_of_materials_is_what_the_requirements_say():
+    assert run(sys.executable, ROOT / "benchmarks" / "sbom.py", "--check") == ""
+    content = json.loads((ROOT / "docs" / "sbom.cdx.json").read_text())
+    licences = {part["name"]: json.dumps(part["licenses"]) for part in content["components"]}
+    assert {"numpy", "scipy", "libigl", "joblib", "three.js"} < set(licences)
+    # GPL is for tests alone: nothing that ships needs it. (nlopt's LGPL parts are linked, in its own wheel.)
+    assert not [name for name, licence in licences.items() if re.search(r"(?<!L)GPL|NOASSERTION", licence)]
+    assert "pymeshlab" not in licences
+
+
 @pytest.fixture(scope="module")
 def pip():
     pytest.importorskip("pip", reason="needs pip to build the wheel")
@@ -57,6 +69,7 @@ def test_a_wheel_carries_its_data(pip, tmp_path):
     pages = ("viewer.js", "page.html", "page.css", "editor.js", "editor.html", "editor.css")
     assert {f"toongeo/io/page/{name}" for name in pages} < set(names)
     assert {f"toongeo/app/editor/{name}" for name in ("clicks.csv", "contours.csv")} < set(names)
+    assert "toongeo/sbom.cdx.json" in names
     assert not [name for name in names if "node_modules" in name]
     assert not [name for name in names if "/build/" in name or name.startswith("tests")]
     found = run(

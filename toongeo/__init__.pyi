@@ -1,6 +1,7 @@
 """The public names, for type checkers and for ``__init__.py``, which imports each when it is first used."""
 
 from toongeo.app.editor.landmark_editor import LandmarkEditor as LandmarkEditor
+from toongeo.app.notebook.avatar_widget import AvatarWidget as AvatarWidget
 from toongeo.avatar import Avatar as Avatar
 from toongeo.avatar import load_avatar as load_avatar
 from toongeo.avatar import make_avatar as make_avatar
@@ -86,9 +87,11 @@ from toongeo.pipeline import fit_cranium as fit_cranium
 from toongeo.pipeline import fit_eyes as fit_eyes
 from toongeo.pipeline import fit_lids as fit_lids
 from toongeo.pipeline import fit_mouth as fit_mouth
+from toongeo.pipeline import held_out_errors as held_out_errors
 from toongeo.pipeline import ibug_landmarks as ibug_landmarks
 from toongeo.pipeline import keep_lids_outside as keep_lids_outside
 from toongeo.pipeline import make_room as make_room
+from toongeo.pipeline import match_style as match_style
 from toongeo.pipeline import neutral_face as neutral_face
 from toongeo.pipeline import parse_face as parse_face
 from toongeo.pipeline import photometric_fit as photometric_fit

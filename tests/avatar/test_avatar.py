@@ -142,8 +142,8 @@ def test_every_portrait_gives_a_valid_glb(name, shared, node, tmp_path):
 
 def test_three_js_loads_the_glb_and_moves_it(glb, avatar, node):
     (report,) = node("load.mjs", glb)
-    head, teeth, tongue, left, right = report["meshes"]
-    names = ["head", "teeth", "tongue", "eye_left", "eye_right"]
+    head, teeth, tongue, left, right, _ = report["meshes"]
+    names = ["head", "teeth", "tongue", "eye_left", "eye_right", "neck_cap"]
     assert [mesh["name"] for mesh in report["meshes"]] == names
     reach = 1e-3 * np.linalg.norm(avatar.rig.deltas, axis=2).max(1)
     parts = (head, teeth, tongue)

@@ -155,9 +155,9 @@ def test_all_files_hold_hair(worn, tmp_path, node):
     assert "\no hair\n" in text
     assert (tmp_path / "a_texture_1.png").is_file()
     worn.save(tmp_path / "a.ply")
-    assert f"element face {len(worn.faces) + 2 * len(worn.face.model.eyes[0].faces) + len(worn.hair.faces)}\n" in (
-        (tmp_path / "a.ply").read_bytes()[:600].decode("latin1")
-    )
+    eyes, cap = 2 * len(worn.face.model.eyes[0].faces), 84
+    header = (tmp_path / "a.ply").read_bytes()[:600].decode("latin1")
+    assert f"element face {len(worn.faces) + eyes + len(worn.hair.faces) + cap}\n" in header
     worn.save(tmp_path / "player.glb", names="talkinghead")
     assert "Wolf3D_Hair" in {entry["name"] for entry in read_glb(tmp_path / "player.glb").json["nodes"]}
 
@@ -184,6 +184,22 @@ def test_hair_below_the_chin_follows_chains(worn, long_haired):
     assert left[0, 0] > 0 > right[0, 0] and behind[:, 2].max() < min(left[0, 2], right[0, 2])
     np.testing.assert_allclose(springs.joints[:, 0, 1], chin)
     assert (np.diff(springs.joints[..., 1]) < 0).all()
+
+
+def test_capsules_fill_neck_and_jaw_and_leave_resting_hair_alone(long_haired):
+    """Nothing of the skin is within, so that hair may lie on it, and no end of a bone."""
+    face = long_haired.face
+    springs = hair_springs(long_haired.hair, face)
+    chin = face.vertices[face.landmark_vertices[8], 1]
+    assert len(springs.capsules) == 2
+    for row, part in zip(springs.capsules, ("neck", "face"), strict=True):
+        ends, radius = row[:6].reshape(2, 3), row[6]
+        assert 10 < radius < np.ptp(face.vertices[face.region(part), 0]) / 2
+        for P in (springs.joints[:, 1:].reshape(-1, 3), face.vertices[face.region("neck")]):
+            along = np.clip((P - ends[0]) @ (ends[1] - ends[0]) / max(((ends[1] - ends[0]) ** 2).sum(), 1e-9), 0, 1)
+            assert np.linalg.norm(P - ends[0] - along[:, None] * (ends[1] - ends[0]), axis=1).min() > radius - 1e-9
+    neck, jaw = springs.capsules
+    assert max(neck[1], neck[4]) <= chin <= min(jaw[1], jaw[4]) + 1e-9
 
 
 def test_hair_sways_in_three_vrm_and_comes_to_rest(long_haired, tmp_path, node):

@@ -15,8 +15,9 @@ from toongeo import load_avatar
 from toongeo.avatar.state import decode_state, encode_state
 from toongeo.io import read_glb
 from toongeo.model import MorphableModel
+from toongeo.pipeline import LandmarkNoise, RigReport
 from toongeo.pipeline.fit.face_fit import PhotometricReport
-from toongeo.render import PerspectiveCamera
+from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 
 LENGTHS = {"face.vertices", "rig.neutral", "rig.deltas", "rig.gaze"}  # all else is exact
 
@@ -298,3 +299,22 @@ def test_only_classes_of_the_library_are_made(model):
     for node in ({"Popen": {"args": "ls"}}, {"Rig": {}}, {"array": 3}, {"known": "x"}, {"a": 1, "b": 2}, {"eye": "x"}):
         with pytest.raises(ValueError, match="content: expected the state of an avatar"):
             decode_state(packed({**head, "state": {"a": node}}), {}, model)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (RigReport(seconds="long"), "RigReport.seconds: expected float, got str"),
+        (RigReport(matched=True), "RigReport.matched: expected float . None, got bool"),
+        (ScaledOrthographicCamera(1.0, np.eye(3), np.zeros(2)), None),
+        (LandmarkNoise(sigma=0.1, smoothed=1, rejected=()), "LandmarkNoise.smoothed: expected bool, got int"),
+        (LandmarkNoise(sigma=0.1, smoothed=True, rejected=("a",)), "LandmarkNoise.rejected: expected tuple"),
+    ],
+)
+def test_fields_of_other_types_are_refused(model, wrong, message):
+    content = encode_state({"part": wrong}, {}, model)
+    if message is None:
+        assert decode_state(content, {}, model)["part"].scale == 1.0
+        return
+    with pytest.raises(ValueError, match=message):
+        decode_state(content, {}, model)

@@ -60,3 +60,9 @@ def test_only_what_one_rounding_error_decides_is_degenerate():
     for height, lost in zip(heights, heights < 1e-12, strict=True):
         thin = np.array([[0, 0, 0], [1, 0, 0], [0.5, height, 0]])
         assert degenerate_triangles(thin, F).tolist() == [lost]
+
+
+def test_coordinates_whose_products_overflow_are_refused():
+    assert validate_mesh(1e59 * V, F)[0].max() == 2e59
+    with pytest.raises(ValueError, match="V: expected coordinates up to 1e.60, got 2e.61"):
+        validate_mesh(1e61 * V, F)

@@ -33,6 +33,32 @@ def test_a_file_says_what_follows_what(tmp_path, scene):
     assert {skin[bone] for bone in bones[-1, shares[-1] > 0]} == {"Head"}
 
 
+def test_a_file_says_what_chains_stay_out_of(tmp_path, scene):
+    """A capsule of the head's bone, in its frame; all chains of the mesh know of it, and no group without one."""
+    right = replace(scene.meshes[2], pivot=np.array([-30.0, 0.0, 5.0]))
+    springs = replace(chains(len(scene.meshes[0].vertices)), capsules=np.array([[0.0, -90, -20, 0, -160, -30, 45]]))
+    write_vrm(tmp_path / "a.vrm", Scene((replace(scene.meshes[0], springs=springs), scene.meshes[1], right)), {})
+    document = read_glb(tmp_path / "a.vrm").json
+    entry = document["extensions"]["VRMC_springBone"]
+    (collider,), (group,) = entry["colliders"], entry["colliderGroups"]
+    assert group["colliders"] == [0] and entry["springs"][0]["colliderGroups"] == [0]
+    assert document["nodes"][collider["node"]]["name"] == "Head"
+    capsule = collider["shape"]["capsule"]
+    assert capsule["radius"] == pytest.approx(0.045)
+    np.testing.assert_allclose(np.subtract(capsule["tail"], capsule["offset"]), [0, -0.07, -0.01], atol=1e-9)
+    parents = {child: k for k, node in enumerate(document["nodes"]) for child in node.get("children", ())}
+    place, node = np.array(capsule["offset"]), collider["node"]
+    while node is not None:
+        place, node = place + document["nodes"][node]["translation"], parents.get(node)
+    np.testing.assert_allclose(place, [0, -0.09 + 1.58, -0.02], atol=1e-9)  # the ground is 1.58 m below the eyes
+
+
+@pytest.mark.parametrize("capsules", [np.zeros((1, 6)), np.zeros((1, 7)), np.full((1, 7), np.nan)])
+def test_capsules_that_cannot_be_are_refused(capsules):
+    with pytest.raises(ValueError, match="capsules: expected"):
+        SpringChains(np.zeros((1, 2, 3)), np.zeros((4, 1, 1)), capsules)
+
+
 @pytest.mark.parametrize(
     ("joints", "weights", "message"),
     [

@@ -1,7 +1,7 @@
 // node browse.mjs URL STEPS.json FOLDER: open a page in headless Chromium, do the steps, tell what happened as JSON.
 // A step is one of {shot: file}, {slider: name, value}, {click: selector}, {key: name, on: selector}, {run: script},
 // {download: selector, file}, {wait: script}, {choose: selector, value}, {drag: script, by | to, shift}, {tap: script, times},
-// {touch: script}, {page: file}, {size: [width, height]}, {axe: context}, {media: features}, {cpu: true}. Scripts of drags and taps give places
+// {touch: script}, {page: file}, {size: [width, height]}, {axe: context}, {media: features}, {cpu: true}, {frame: script, until}. Scripts of drags and taps give places
 // in CSS pixels, those of touches frames of places of fingers. Printed: results of the runs, console messages, requests.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -74,6 +74,11 @@ async function act(step) {
     report.results.push(violations.map(({ id, nodes }) => [id, nodes.map(({ html, failureSummary }) => `${html.slice(0, 200)} ${failureSummary}`)]));
   } else if (step.media) {
     await page.emulateMedia(step.media);
+  } else if (step.frame) {
+    // In the first frame of the page, until it gives a value if there is one to wait for.
+    const inner = async () => page.frames()[1]?.evaluate(step.frame).catch(() => undefined);
+    if ('until' in step) while ((await inner()) !== step.until) await page.waitForTimeout(30);
+    else report.results.push((await inner()) ?? null);
   } else if (step.cpu) {
     const now = await cpuSeconds();
     report.results.push(Object.fromEntries(Object.entries(now).map(([type, spent]) => [type, spent - (before[type] ?? 0)])));

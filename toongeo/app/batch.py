@@ -32,7 +32,7 @@ def add_batch(commands: Any) -> None:
 def _batch(options: argparse.Namespace) -> None:
     from toongeo.batch import BatchLimits, BatchOptions, make_avatars
 
-    backend = options.backend or ("dask" if options.scheduler else "loky")
+    backend: Any = options.backend or ("dask" if options.scheduler else "loky")
     result = make_avatars(
         options.folder,
         options.output,

@@ -15,6 +15,7 @@ from toongeo.app.commands.flags import in_flags, know_flags
 from toongeo.app.commands.make_command import add_make
 from toongeo.app.commands.number_types import port
 from toongeo.app.commands.performance_commands import add_performances
+from toongeo.app.commands.stylize_command import add_stylize
 from toongeo.app.models.commands import add_model
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 
@@ -75,6 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     add_make(commands)
     add_edit(commands)
+    add_stylize(commands)
     demo = commands.add_parser("demo", help="make an avatar of a bundled picture")
     demo.add_argument("-o", "--output", type=Path, default=Path("toongeo-demo"), metavar="FOLDER")
     demo.set_defaults(run=_demo)

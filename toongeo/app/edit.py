@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-import numpy as np
-
 from toongeo.app.check_output import check_output
+from toongeo.app.commands.path_is import path_is
 from toongeo.app.landmark_source import LandmarkSource
-from toongeo.arrays import Floats
 from toongeo.editing import ExpressionEditor
 from toongeo.io import LandmarkFile, read_image, write_image
 from toongeo.model import expression_weights
@@ -46,16 +44,11 @@ def edit(
     if not weights and not absolute:
         raise ValueError("weights: expected an expression, such as --smile 0.5 or --weights jawOpen=0.3")
     wanted = expression_weights(weights)
-    img = read_image(image)
+    with path_is("image"):
+        img = read_image(image)
     points, found = source.landmarks(image, img)
     if isinstance(found, LandmarkFile):
         print(found.message)
     editor = ExpressionEditor(img, points)
-    write_image(output, editor.frame(wanted if absolute else _added(editor, wanted)))
+    write_image(output, editor.frame(wanted if absolute else editor.added(wanted)))
     print(f"wrote {output}")
-
-
-def _added(editor: ExpressionEditor, weights: Mapping[str, float]) -> Floats:
-    """Weights (54,) of what the picture shows and of what is added; what is taken away is no more than is there."""
-    sums = editor.pose + editor.avatar.rig.weights(weights)
-    return np.asarray(np.maximum(sums, np.minimum(editor.pose, 0)))

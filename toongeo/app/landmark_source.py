@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.app.commands.path_is import path_is
 from toongeo.app.unsure_landmarks_error import UnsureLandmarksError
 from toongeo.io import LandmarkFile, read_landmark_file
 from toongeo.model.ibug68 import INNER
@@ -41,7 +42,8 @@ class LandmarkSource:
             If the file cannot be read, or there is no such face.
         """
         if self.file is not None:
-            read = read_landmark_file(self.file, scheme=self.scheme, face=self.face, size=img)
+            with path_is("landmarks"):
+                read = read_landmark_file(self.file, scheme=self.scheme, face=self.face, size=img)
             return read.points, read
         if self.scheme != "auto":
             raise ValueError(f"scheme: expected --landmarks FILE with --scheme, got {self.scheme!r} alone")

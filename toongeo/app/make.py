@@ -9,17 +9,17 @@ from typing import TextIO
 import numpy as np
 from tqdm import tqdm
 
+from toongeo.app.commands.path_is import path_is
 from toongeo.app.contact_sheet import contact_sheet
 from toongeo.app.landmark_source import LandmarkSource
 from toongeo.app.making.head_jobs import HeadJob
 from toongeo.app.making.made_head import MadeHead
 from toongeo.app.making.make_options import MakeOptions
 from toongeo.arrays import Bytes, Floats
-from toongeo.avatar.held_out_errors import held_out_errors
 from toongeo.avatar.make_avatar import STAGES, make_avatar
 from toongeo.io import LandmarkFile, read_image, write_image
 from toongeo.model.ibug68 import INNER
-from toongeo.pipeline import FaceFit
+from toongeo.pipeline import FaceFit, held_out_errors
 from toongeo.pipeline.parse.given_hair import given_hair
 
 __all__ = ["make", "read_job"]
@@ -69,6 +69,8 @@ def make(
         avatar = make_avatar(img, points, progress=announce, **given)
         bar.update(len(STAGES) - bar.n)
         bar.set_description("done")
+    if avatar.style is not None:
+        img, points = avatar.style.img, avatar.style.landmarks
     made = MadeHead(job, avatar, _held_out(img, points, options))
     avatar.save(job.output, format=options.format, **options.saving)
     if job.sheet is not None:
@@ -82,9 +84,11 @@ def make(
 
 def read_job(job: HeadJob, source: LandmarkSource, options: MakeOptions) -> tuple[Bytes, Floats]:
     """Picture and landmarks (68, 2) px; raises as `make`, and for a hair mask that cannot be one of the picture."""
-    img = read_image(job.image)
+    with path_is("image"):
+        img = read_image(job.image)
     if options.hair_mask is not None:
-        given_hair(options.hair_mask, img.shape)
+        with path_is("hair_mask"):
+            given_hair(options.hair_mask, img.shape)
     points, found = dataclasses.replace(source, file=job.landmarks).landmarks(job.image, img)
     if isinstance(found, LandmarkFile):
         print(found.message, file=_aside(options))

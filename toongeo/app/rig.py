@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from toongeo.app.check_output import check_output
+from toongeo.app.commands.path_is import path_is
 from toongeo.io import MESH_SUFFIXES, Scene, read_image, read_mesh, read_mesh_landmarks, write_glb
 from toongeo.io.scene import METRES
 from toongeo.pipeline import Rig, rig_mesh
@@ -43,17 +44,21 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     check_output(output, {"mesh": mesh, "landmarks": landmarks, "texture": texture})
     if mesh.suffix.lower() not in MESH_SUFFIXES:
         raise ValueError(f"mesh: expected a name that ends in {', '.join(MESH_SUFFIXES)}, got {mesh}")
-    parts = read_mesh(mesh).meshes
+    with path_is("mesh"):
+        parts = read_mesh(mesh).meshes
     if texture is not None:
         if any(part.uv is None for part in parts):
             raise ValueError(f"texture: expected a mesh with texture coordinates at every corner, got {mesh} without")
-        picture = read_image(texture)
+        with path_is("texture"):
+            picture = read_image(texture)
         parts = tuple(replace(part, texture=picture) for part in parts)
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     vertices = np.vstack([part.vertices for part in parts])
     faces = np.vstack([part.faces + start for part, start in zip(parts, starts, strict=False)])
     weld = mesh.suffix.lower() not in _UNCUT
-    found = rig_mesh(vertices, faces, read_mesh_landmarks(landmarks, vertices), weld=weld)
+    with path_is("landmarks"):
+        points = read_mesh_landmarks(landmarks, vertices)
+    found = rig_mesh(vertices, faces, points, weld=weld)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle, size = (low + high) / 2, float(np.linalg.norm(high - low))
     near = np.abs(middle).max() <= _FAR * size
@@ -72,5 +77,7 @@ def rig(mesh: Path, landmarks: Path, output: Path, *, texture: Path | None = Non
     report = found.report
     print(f"{len(found.names)} expressions on {len(vertices)} vertices in {report.seconds:.1f} s")
     print(f"{report.matched:.1%} of the template's face found a partner, mean distance {report.distance:.3g}")
+    if report.mouth_opens is False:
+        print("warning: the mouth does not open: upper and lower lip are one surface, which expressions stretch")
     print(f"wrote {output}")
     return found

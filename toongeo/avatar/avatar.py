@@ -11,10 +11,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo.avatar.avatar_trimesh import avatar_trimesh
 from toongeo.avatar.crop_faces import Crop
-from toongeo.avatar.save_avatar import save_avatar
+from toongeo.avatar.looks.neck_cap import neck_cap
+from toongeo.avatar.looks.soft_light import soft_light
+from toongeo.avatar.save_avatar import avatar_page, save_avatar
 from toongeo.avatar.stages import AvatarStages
+from toongeo.io.shown_page import ShownPage
 from toongeo.model import atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.protocols import Camera
@@ -22,9 +26,7 @@ from toongeo.render import (
     FrameRenderer,
     ScaledOrthographicCamera,
     Surface,
-    irradiance,
     render_mesh,
-    studio_light,
 )
 from toongeo.render.picture_size import picture_size
 
@@ -46,6 +48,7 @@ class Avatar(AvatarStages):
     """
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -150,15 +153,15 @@ class Avatar(AvatarStages):
         """
         picture_size(size)
         camera = camera or self._camera(size, yaw, pitch)
-        surfaces = self.surfaces(weights)
+        surfaces = self._closed(weights)
         if not textured:
             return render_mesh(surfaces, camera, size, shading="clay")
         # The texture holds the light of the picture already: a soft light shows the shape without shading it twice.
-        return render_mesh(surfaces, camera, size, light=_soft_light())
+        return render_mesh(surfaces, camera, size, light=soft_light())
 
     def frame_renderer(self, size: int = 512, yaw: float = 0.0, pitch: float = 0.0) -> FrameRenderer:
-        """What draws films of the :meth:`surfaces` of this avatar as :meth:`render` does, faster."""
-        return FrameRenderer(self.surfaces(), self._camera(size, yaw, pitch), size, light=_soft_light())
+        """What draws films as :meth:`render` does, faster: of :meth:`surfaces`, and of what closes the neck."""
+        return FrameRenderer(self._closed(None), self._camera(size, yaw, pitch), size, light=soft_light())
 
     def to_trimesh(self, weights: Weights = None, *, crop: Crop = "head", textured: bool = True) -> trimesh.Scene:
         """Head, teeth, tongue and eyeballs with an expression, as ``trimesh.Trimesh`` objects.
@@ -187,18 +190,34 @@ class Avatar(AvatarStages):
         eyes = [self.eye_vertices(side, weights) for side in range(len(self.eyes.templates))]
         return avatar_trimesh(self, self.vertices(weights), eyes, crop=crop, textured=textured)
 
+    def show(self, *, height: int = 520, title: str = "avatar", **options: Any) -> ShownPage:
+        """The page of ``.html`` in a frame, as the last line of a notebook's cell; it asks nothing of a network.
+
+        The notebook's file holds the whole page then, some megabytes; the avatar itself shows as a small picture. For
+        weights that go to and fro see :class:`toongeo.AvatarWidget`.
+
+        Parameters
+        ----------
+        height : int
+            Of the frame, px.
+        title : str
+        **options
+            ``crop quantize texture animation`` as of :meth:`save`.
+        """
+        return ShownPage(avatar_page(self, title, **options), height, title)
+
     def save(self, path: str | os.PathLike[str], *, format: str | None = None, **options: Any) -> None:
         """Write a file by its suffix, or what a format names.
 
-        ================  ================================================================================
-        ``.glb``          options ``crop quantize normals texture animation names sparse loadable``
-        ``.vrm``          VRM 1.0 with a body of bones alone, hair below the chin swings; ``crop normals texture meta``
+        ================  ==================================================================================
+        ``.glb``          options ``crop quantize normals texture animation names sparse loadable unlit``
+        ``.vrm``          VRM 1.0 with a body of bones, hair below the chin swings; ``crop normals texture meta unlit``
         ``.html``         a page with sliders that needs no network; ``crop quantize texture animation title``
         ``.usdz``         with blend shapes, needs the extra ``usd``; ``crop names``
         ``.obj``          ``face.obj`` with ``face.mtl`` and ``face_texture.png`` beside it; ``crop``
         ``.ply``          with uv, and colours at the vertices; ``crop``
         ``obj-sequence``  a folder with an ``.obj`` an expression, ``face.mtl``, ``face_texture.png``; ``crop names``
-        ================  ================================================================================
+        ================  ==================================================================================
 
         The file of this name is replaced. Those that come along with it, or stand in the folder, replace only what was
         written for the same output before.
@@ -230,6 +249,9 @@ class Avatar(AvatarStages):
         loadable : bool
             Whether :func:`toongeo.load_avatar` can read the file back. It then holds the fit and how the picture was
             parsed (some hundred kB). A file with another crop or other names never is.
+        unlit : bool or "auto"
+            Whether viewers show the colours as they are (``KHR_materials_unlit``, MToon in a ``.vrm``) or light them.
+            "auto": drawings as they are, photographs and paintings lit.
         meta : toongeo.io.VrmMeta
             Name, authors and licence; by default nothing is allowed to others.
         title : str
@@ -249,6 +271,11 @@ class Avatar(AvatarStages):
         """
         save_avatar(Path(path), self, format, options)
 
+    def _closed(self, weights: Weights) -> list[Surface]:
+        """The surfaces, and what closes the neck."""
+        cap = neck_cap(self.face.model, self.rig, self.texture)
+        return self.surfaces(weights) + ([] if cap is None else [cap])
+
     def _camera(self, size: int, yaw: float, pitch: float) -> ScaledOrthographicCamera:
         skin = self.rig.neutral[self.face.region("skin")]
         shown = skin if self.hair is None else np.vstack([skin, self.hair.vertices])
@@ -256,11 +283,3 @@ class Avatar(AvatarStages):
         return ScaledOrthographicCamera.look(
             yaw, pitch, size=size, centre=(low + high) / 2, extent=_HEADROOM * (high - low).max()
         )
-
-
-def _soft_light() -> np.ndarray:
-    """Half the relief of the studio light, and as bright towards the viewer."""
-    light = studio_light()
-    front = irradiance(np.array([[0.0, 0.0, 1.0]]), light)[0]
-    light[1:] *= 0.5
-    return light * (front / irradiance(np.array([[0.0, 0.0, 1.0]]), light)[0])

@@ -34,6 +34,8 @@ def avatar_trimesh(
     eyeballs = {f"eye_{side}": V for side, V in zip(SIDES, eyes, strict=False)}
     meshes = []
     for mesh in avatar_scene(avatar, crop=crop).meshes:
+        if mesh.name == "neck_cap":  # for viewers; who counts triangles counts those of the model
+            continue
         moved = posed.get(mesh.name, {})  # hair is rigid on the skull
         if mesh.name in eyeballs:
             moved = {"vertices": eyeballs[mesh.name], "normals": None}

@@ -20,6 +20,7 @@ PLAYER_MESHES = {
     "eye_left": "EyeLeft",
     "eye_right": "EyeRight",
     "hair": "Wolf3D_Hair",
+    "neck_cap": "Wolf3D_Neck",
 }
 _LETTERS = {"ih": "I", "oh": "O", "ou": "U"}
 _PLAYER_VISEMES = [(f"viseme_{_LETTERS.get(name, name)}", f"viseme_{name}") for name in SCHEMES["oculus"]]

@@ -5,6 +5,7 @@ import os
 import numpy as np
 
 from toongeo.avatar.avatar import Avatar
+from toongeo.avatar.field_types import check_field_types
 from toongeo.avatar.scene import head_parts
 from toongeo.avatar.state import decode_state
 from toongeo.io import Scene, SceneMesh, glb_scene, read_glb, split_seams
@@ -64,9 +65,36 @@ def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = 
         known = _rig_arrays(scene, model)
         state = decode_state(document.attachment, known, model)
         hair = _hair(scene, state.pop("hair", None))
-        return Avatar(**state, texture=_texture(scene.meshes[0]), hair=hair)
+        avatar = Avatar(**state, texture=_texture(scene.meshes[0]), hair=hair)
+        check_field_types(avatar)
+        _check_shapes(avatar, model)
+        return avatar
     except (LookupError, TypeError, AttributeError, ArithmeticError, RecursionError, ValueError) as error:
         raise ValueError(f"path: {path} cannot be loaded: {error}") from error
+
+
+def _check_shapes(avatar: Avatar, model: MorphableModel) -> None:
+    """Refuse arrays that do not fit the model, whoever wrote them."""
+    n, k, e = len(model.mean), len(model.identity), len(avatar.rig.names)
+    face, fit, eyes = avatar.face, avatar.fit, avatar.eyes
+    balls = len(eyes.templates)
+    for name, array, shape in (
+        ("face.vertices", face.vertices, (n, 3)),
+        ("face.landmark_vertices", face.landmark_vertices, (68,)),
+        ("fit.landmark_vertices", fit.landmark_vertices, (68,)),
+        ("fit.identity", fit.identity, (k,)),
+        ("fit.expression", fit.expression, (len(model.expression),)),
+        ("rig.pose", avatar.rig.pose, (e,)),
+        ("eyes.centres", eyes.centres, (balls, 3)),
+        ("eyes.radii", eyes.radii, (balls,)),
+        ("eyes.turn", eyes.turn, (balls, 2)),
+    ):
+        if array.shape != shape or not np.isfinite(array).all():
+            raise ValueError(f"{name}: expected finite numbers of shape {shape}, got {array.dtype} {array.shape}")
+        if name.endswith("landmark_vertices") and not (
+            array.dtype.kind in "iu" and 0 <= array.min() <= array.max() < n
+        ):
+            raise ValueError(f"{name}: expected vertices in 0..{n - 1}")
 
 
 def _rig_arrays(scene: Scene, model: MorphableModel) -> dict[str, np.ndarray]:

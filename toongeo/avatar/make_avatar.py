@@ -38,13 +38,15 @@ from toongeo.pipeline import (
     snap_eyes,
 )
 from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
+from toongeo.pipeline.align.fit_ears import fit_ears
 from toongeo.pipeline.align.size_teeth import size_teeth
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.drawn_mouth import drawn_mouth
 from toongeo.pipeline.texture.bake_texture import check_size
 from toongeo.pipeline.texture.find_glasses import find_glasses
 from toongeo.pipeline.texture.without_glasses import without_glasses
-from toongeo.protocols import FaceParser, HairModeler, Stylizer
+from toongeo.plugins import plugin
+from toongeo.protocols import FaceParser, HairModeler, LandmarkDetector, Stylizer
 
 __all__ = ["STAGES", "make_avatar"]
 
@@ -61,7 +63,8 @@ def make_avatar(
     *,
     model: MorphableModel | None = None,
     fit: FaceFit | None = None,
-    parser: FaceParser | None = None,
+    detector: str | LandmarkDetector | None = None,
+    parser: str | FaceParser | None = None,
     noise: Noise = "auto",
     snap: bool = False,
     photometric: bool = False,
@@ -89,9 +92,12 @@ def make_avatar(
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
     fit : FaceFit, optional
         To these landmarks, as one of :func:`toongeo.fit_3dmm_together`: it is kept, with its identity and
-        model. Not with ``snap`` or ``photometric``, which fit again.
-    parser : FaceParser, optional
-        Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given.
+        model. Not with ``snap``, ``photometric`` or ``style``, which fit again.
+    detector : LandmarkDetector or str, optional
+        Finds the landmarks if none are given: see :func:`toongeo.detect_landmarks`.
+    parser : FaceParser or str, optional
+        Cuts the picture into the parts of the face; :class:`toongeo.ClassicalParser` unless another is given, or the
+        name of one that an installed package offers (:mod:`toongeo.plugins`).
     noise : "auto" or float
         Of the landmarks, in outer-eye distances: see :func:`toongeo.align_face`. What was found and done about it is in
         ``face.report.noise`` and, in words, in ``report.warnings``.
@@ -108,7 +114,9 @@ def make_avatar(
         Strength of the transferred expressions; see :func:`toongeo.build_rig`.
     method : {"cartoon", "caricature"}
         How the fitted face comes to its landmarks: by :func:`toongeo.align_face`, or in the deformation space of
-        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``.
+        exaggerated faces by :func:`toongeo.fit_caricature`, which also finds the pose anew: ``face.camera``. That
+        takes three to four times as long and looks no better; ask for it where you go on with its weights, as
+        ``rig="caricature"`` does.
     rig : {"transfer", "caricature"}
         Where the expressions come from: the template's, by deformation transfer, or the drawing's own, reconstructed
         from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
@@ -163,7 +171,7 @@ def make_avatar(
     clock.start("fit")
     doubts: tuple[str, ...] = ()
     if landmarks is None:
-        found = detect_landmarks(img)
+        found = detect_landmarks(img, detector=detector)
         landmarks, scheme, doubts = found.points, "ibug68", detection_warnings(found)
     kept, model = fit, fit.model if fit is not None else model or default_model()
     if isinstance(scheme, str):
@@ -186,7 +194,7 @@ def make_avatar(
         given = landmarks
         fit = fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
-    parse = parse_face(img, landmarks, fit, parser=parser, hair_mask=drawn)
+    parse = parse_face(img, landmarks, fit, parser=plugin(parser, "parser"), hair_mask=drawn)
     if snap:
         clock.start("fit")
         landmarks = snap_eyes(landmarks, parse)
@@ -198,7 +206,7 @@ def make_avatar(
     goal = given if cleaned.change else landmarks  # errors are told against the points that were given, or snapped
     face = align(fit, landmarks)
     face = dataclasses.replace(face, report=dataclasses.replace(face.report, noise=cleaned.change))
-    face = size_teeth(fit_cranium(face, parse), drawn_mouth(img, parse))
+    face = size_teeth(fit_ears(fit_cranium(face, parse), parse), drawn_mouth(img, parse))
     clock.start("rig")
     neutral_aligned, shapes, drawn_face = rigged(face, landmarks, rig, neutral=neutral, gain=gain)
     clock.start("eyes")

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo.metrics import MeshQuality, landmark_error
+from toongeo.metrics.outer_eye_distance import outer_eye_distance
 from toongeo.model.anatomy.parts import SIDES
-from toongeo.model.ibug68 import INNER, OUTER_EYES
+from toongeo.model.ibug68 import INNER
 from toongeo.pipeline import AlignedFace, Eyes, FaceFit, Iris
 from toongeo.protocols import LandmarkDetection
 
@@ -15,7 +16,6 @@ __all__ = [
     "detection_warnings",
     "eye_warnings",
     "landmark_errors",
-    "outer_eye_distance",
     "shape_warnings",
 ]
 
@@ -63,12 +63,6 @@ def landmark_errors(face: FaceFit | AlignedFace, landmarks: np.ndarray) -> dict[
     """Landmark error by part / outer-eye distance (that of the face where an outer corner is missing)."""
     found = face.project(face.vertices[face.landmark_vertices])
     return landmark_error(found, landmarks, scale=outer_eye_distance(landmarks, found))
-
-
-def outer_eye_distance(landmarks: np.ndarray, found: np.ndarray) -> float:
-    """The unit of landmark errors, px; corners that are missing are taken from where they were found."""
-    right, left = np.where(np.isfinite(landmarks), landmarks, found)[list(OUTER_EYES)]
-    return float(np.linalg.norm(left - right))
 
 
 def detection_warnings(found: LandmarkDetection) -> tuple[str, ...]:

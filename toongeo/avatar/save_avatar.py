@@ -10,9 +10,12 @@ from typing import Any, Literal
 
 import numpy as np
 
+from toongeo.avatar.clips import demo_clip, weight_clip
 from toongeo.avatar.crop_faces import Crop
 from toongeo.avatar.export_targets import PLAYER_MESHES, Names, export_targets, renamed_scene
-from toongeo.avatar.scene import avatar_scene, demo_clip, own_shapes, uv_colours, weight_clip
+from toongeo.avatar.looks.coloured_points import coloured_points
+from toongeo.avatar.looks.drawn_look import drawn_look
+from toongeo.avatar.scene import avatar_scene, own_shapes
 from toongeo.avatar.stages import AvatarStages
 from toongeo.avatar.state import encode_state
 from toongeo.io import (
@@ -34,14 +37,17 @@ from toongeo.io.writers.write_usdz import usd_modules
 from toongeo.model.expression_schemes import PRESETS, SCHEMES
 from toongeo.pipeline import Rig
 
-__all__ = ["avatar_attachment", "page_presets", "rig_arrays", "save_avatar", "writer_for"]
+__all__ = ["avatar_attachment", "avatar_page", "page_presets", "rig_arrays", "save_avatar", "writer_for"]
 
 _Weights = Mapping[str, float]
 _Texture = Literal["png", "jpeg"] | None
+_Unlit = bool | Literal["auto"]
 _Animation = Literal["demo"] | None | tuple[Any, Any] | tuple[Any, Any, Any]
 _EXACT_MM = 1e-4  # displacements below are not stored: less than float32 resolves at the crown of a head
 _COARSE_MM = 0.04  # the same for a quantized file: a fifth of a pixel where a head is a thousand high
 _COARSE_STEPS = 63  # of the confidence of the parse in a quantized file
+# Fields that are not in the state: the picture and a mesh of the file, and the drawing, which is not kept.
+_ELSEWHERE = ("texture", "hair", "style")
 
 
 def save_avatar(path: Path, avatar: AvatarStages, kind: str | None, options: Mapping[str, Any]) -> None:
@@ -78,6 +84,7 @@ def _write_glb(
     names: Names = "toongeo",
     sparse: bool = True,
     loadable: bool = True,
+    unlit: _Unlit = "auto",
 ) -> None:
     scene = avatar_scene(
         avatar,
@@ -85,6 +92,7 @@ def _write_glb(
         shapes=export_targets(names),
         animation=_animation(avatar.rig, animation),
         textured=_check_texture(texture) is not None,
+        unlit=_is_unlit(avatar, unlit),
     )
     player = names == "talkinghead"
     if player:
@@ -111,10 +119,12 @@ def _write_vrm(
     normals: bool = False,
     texture: _Texture = "png",
     meta: VrmMeta | None = None,
+    unlit: _Unlit = "auto",
 ) -> None:
     if not avatar.eyes.templates:
         raise ValueError("avatar: expected one with eyeballs for .vrm, whose bones turn them, got none from its model")
-    scene = avatar_scene(avatar, crop=crop, textured=_check_texture(texture) is not None)
+    textured, plain = _check_texture(texture) is not None, _is_unlit(avatar, unlit)
+    scene = avatar_scene(avatar, crop=crop, textured=textured, unlit=plain)
     # Bones turn the eyes, which therefore need no targets; the lids that follow are the head's.
     still = (replace(m, targets=None, target_names=()) if m.name.startswith("eye_") else m for m in scene.meshes)
     # One range for both eyes: that of the eye whose iris would leave its opening first.
@@ -138,7 +148,7 @@ def avatar_attachment(avatar: AvatarStages, *, coarse: bool) -> bytes:
         steps = np.float32(_COARSE_STEPS)
         parse = replace(parse, confidence=np.rint(parse.confidence * steps) / steps)
     # The camera's picture is known to the reader as the file's image, the rig's arrays as its meshes.
-    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name not in ("texture", "hair")}
+    state = {f.name: getattr(avatar, f.name) for f in fields(avatar) if f.init and f.name not in _ELSEWHERE}
     state["parse"] = parse
     if avatar.hair is not None:
         # The mesh of the file has a point for each pair of these.
@@ -162,6 +172,12 @@ def _animation(rig: Rig, animation: _Animation) -> SceneAnimation | None:
     raise ValueError(f"animation: expected 'demo', None, or times, weights and turns, got {animation!r}")
 
 
+def _is_unlit(avatar: AvatarStages, unlit: _Unlit) -> bool:
+    if unlit not in (True, False, "auto"):
+        raise ValueError(f"unlit: expected True, False or 'auto', got {unlit!r}")
+    return drawn_look(avatar) if unlit == "auto" else bool(unlit)
+
+
 def _check_texture(texture: _Texture) -> _Texture:
     if texture not in ("png", "jpeg", None):
         raise ValueError(f"texture: expected 'png', 'jpeg' or None, got {texture!r}")
@@ -178,27 +194,8 @@ def _write_obj_sequence(path: Path, avatar: AvatarStages, *, crop: Crop = "head"
 
 
 def _write_ply(path: Path, avatar: AvatarStages, *, crop: Crop = "head") -> None:
-    """Neutral head, eyeballs and hair in one mesh, with uv and the textures' colours at the vertices.
-
-    Vertices keep their order; those on seams, which have several uv, come again at the end.
-    """
-    meshes = avatar_scene(avatar, crop=crop, split=False).meshes
-    points = _joined([(mesh.vertices, mesh.faces) for mesh in meshes])
-    uvs = _joined([(mesh.uv, mesh.uv_faces) for mesh in meshes])
-    vertex, corner, split = split_seams(points[1], uvs[1])
-    again = np.r_[False, vertex[1:] == vertex[:-1]]
-    order = np.argsort(again, kind="stable")
-    uv = uvs[0][corner[order]]
-    looks = np.vstack([uv_colours(mesh) for mesh in meshes])
-    colours = np.rint(looks[corner[order]]).astype(np.uint8)
-    write_ply(path, points[0][vertex[order]], np.argsort(order)[split], colours, uv)
-
-
-def _joined(parts: list[tuple[Any, Any]]) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of all parts, and indices into them."""
-    offsets = np.cumsum([0, *(len(rows) for rows, _ in parts)])
-    indices = [index + offset for (_, index), offset in zip(parts, offsets, strict=False)]
-    return np.vstack([rows for rows, _ in parts]), np.vstack(indices)
+    """Neutral head, eyeballs and hair in one mesh."""
+    write_ply(path, *coloured_points(avatar_scene(avatar, crop=crop, split=False).meshes))
 
 
 def _write_usdz(path: Path, avatar: AvatarStages, *, crop: Crop = "head", names: Names = "toongeo") -> None:
@@ -216,6 +213,22 @@ def _write_html(
     animation: _Animation = "demo",
     title: str | None = None,
 ) -> None:
+    name = path.stem if title is None else title
+    page = avatar_page(avatar, name, crop=crop, quantize=quantize, texture=texture, animation=animation)
+    atomic_write({path: page.encode("utf-8")})
+
+
+def avatar_page(
+    avatar: AvatarStages,
+    title: str,
+    *,
+    crop: Crop = "head",
+    quantize: bool = True,
+    texture: _Texture = "png",
+    animation: _Animation = "demo",
+    framed: bool = False,
+) -> str:
+    """The page of an avatar; ``framed`` as of :func:`toongeo.io.page_html`, the other options as ``.html`` has them."""
     scene = avatar_scene(
         avatar,
         crop=crop,
@@ -224,8 +237,7 @@ def _write_html(
     )
     tolerance = _COARSE_MM if quantize else _EXACT_MM
     glb = encode_glb(scene, tolerance_mm=tolerance, quantize=quantize, picture=texture or "png")
-    page = page_html(glb, title=path.stem if title is None else title, presets=page_presets(avatar.rig))
-    atomic_write({path: page.encode("utf-8")})
+    return page_html(glb, title=title, presets=page_presets(avatar.rig), framed=framed)
 
 
 def page_presets(rig: Rig | None = None) -> dict[str, _Weights]:

@@ -9,34 +9,22 @@ import numpy as np
 
 from toongeo.avatar.crop_faces import Crop, crop_faces
 from toongeo.avatar.hair_springs import hair_springs
+from toongeo.avatar.looks.neck_cap import neck_cap
+from toongeo.avatar.looks.uv_colours import uv_colours
 from toongeo.avatar.stages import AvatarStages
 from toongeo.geometry import vertex_normals
 from toongeo.io import Scene, SceneAnimation, SceneMesh
 from toongeo.model import MorphableModel, atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES, gaze_names
-from toongeo.model.anatomy.neck import NECK_MM
 from toongeo.model.anatomy.parts import SIDES, TEETH
 from toongeo.pipeline import AlignedFace, Eyes, Hair, Rig
-from toongeo.render import sample_image, uv_to_px
+from toongeo.render import Surface
 
-__all__ = ["Shapes", "avatar_scene", "demo_clip", "head_parts", "own_shapes", "weight_clip"]
+__all__ = ["Shapes", "avatar_scene", "head_parts", "own_shapes"]
 
-_FRAMES_PER_SECOND = 30
-# The clip: (seconds, weights reached then), linear in between.
-_LARGEST_WEIGHT, _LONGEST_S = 1e6, 1e6  # as of weights everywhere; eleven days
-_CLIP: tuple[tuple[float, dict[str, float]], ...] = (
-    (0.0, {}),
-    (0.5, {}),
-    (0.6, {"eyeBlinkLeft": 1, "eyeBlinkRight": 1}),
-    (0.8, {}),
-    (1.4, {"mouthSmileLeft": 1, "mouthSmileRight": 1, "cheekSquintLeft": 0.4, "cheekSquintRight": 0.4}),
-    (2.0, {"eyeLookOutLeft": 0.8, "eyeLookInRight": 0.8, "mouthSmileLeft": 0.5, "mouthSmileRight": 0.5}),
-    (2.6, {"eyeLookInLeft": 0.8, "eyeLookOutRight": 0.8, "browInnerUpLeft": 0.8, "browInnerUpRight": 0.8}),
-    (3.2, {"jawOpen": 0.7, "browOuterUpLeft": 0.6, "browOuterUpRight": 0.6}),
-    (3.8, {}),
-)
 # Parts of the head that are meshes of their own, by regions of the model; the rest is the mesh "head".
 _PARTS = {"teeth": TEETH, "tongue": ("tongue",)}
+_ROUGHNESS, _SPECULAR = 1.0, 0.2  # of skin in soft light; chosen by eye on the astronaut in three.js
 _STILL_MM = 1e-4  # a target that moves no vertex of a part by more is not among the part's
 Shapes = Sequence[tuple[str, Mapping[str, float]]]
 
@@ -49,6 +37,7 @@ def avatar_scene(
     animation: SceneAnimation | None = None,
     textured: bool = True,
     split: bool = True,
+    unlit: bool = False,
 ) -> Scene:
     """Head, teeth, tongue, eyeballs and hair of an avatar.
 
@@ -65,18 +54,20 @@ def avatar_scene(
         Targets: their names in the file, and the weights of the rig's expressions and ``eyeLook*`` names that make
         them. By default those of the rig under their own names.
     animation : SceneAnimation, optional
-        Its only track is ``"head"``, (f, 46 + 8): weights of the rig in its order. :func:`demo_clip` makes one.
+        Its only track is ``"head"``, (f, 46 + 8): weights of the rig in its order, as `demo_clip` makes one.
     textured : bool
         False: every mesh has the mean of its texture as its colour.
     split : bool
         False: teeth and tongue stay in the head, whose vertices keep their numbers unless it is cropped.
+    unlit : bool
+        Whether colours are shown as they are.
 
     Returns
     -------
     Scene
         Meshes ``head``, ``teeth``, ``tongue``, ``eye_left`` and ``eye_right``, which share one texture, and ``hair``
-        with its own, on the head, unless there is none or the crop is "face". A model without the regions of teeth and
-        tongue has them in the head.
+        with its own, on the head, unless there is none or the crop is "face"; and ``neck_cap``, which closes the
+        neck. A model without the regions of teeth and tongue has them in the head.
     """
     shapes = own_shapes(avatar.rig) if shapes is None else shapes
     model = avatar.face.model
@@ -85,6 +76,11 @@ def avatar_scene(
     meshes += [_eye(avatar.eyes, side, avatar.texture, shapes) for side in range(len(avatar.eyes.templates))]
     if avatar.hair is not None and crop != "face":
         meshes.append(_hair(avatar.hair, avatar.face))
+    cap = neck_cap(model, avatar.rig, avatar.texture)
+    if cap is not None and crop != "face":
+        meshes.append(_cap(cap))
+    # The picture's own highlights and shadows are in its texture: a second gloss over them would bleach it.
+    meshes = [replace(mesh, roughness=_ROUGHNESS, specular=_SPECULAR, unlit=unlit) for mesh in meshes]
     clip = None if animation is None else _tracks(avatar.rig, animation, shapes, meshes)
     return Scene(tuple(meshes if textured else map(_plain, meshes)), clip)
 
@@ -103,49 +99,6 @@ def head_parts(model: MorphableModel, crop: Crop = "head") -> dict[str, np.ndarr
         parts[name] = kept[inside]
         rest &= ~inside
     return {name: faces for name, faces in {"head": kept[rest], **parts}.items() if len(faces)}
-
-
-def demo_clip(rig: Rig) -> SceneAnimation:
-    """A few seconds that show what a face can do, for :func:`avatar_scene`."""
-    keys = np.array([seconds for seconds, _ in _CLIP])
-    times = np.arange(round(keys[-1] * _FRAMES_PER_SECOND) + 1) / _FRAMES_PER_SECOND
-    at_keys = np.array([[then.get(name, 0.0) for name, _ in own_shapes(rig)] for _, then in _CLIP])
-    columns = [np.interp(times, keys, column) for column in at_keys.T]
-    return SceneAnimation(times, {"head": np.column_stack(columns)}, name="demo")
-
-
-def weight_clip(rig: Rig, times: object, weights: object, turns: object = None) -> SceneAnimation:
-    """Weights over time, for :func:`avatar_scene`.
-
-    Parameters
-    ----------
-    rig : Rig
-    times : (f,) s, increasing, the first >= 0
-    weights : (f, 46) or (f, 54)
-        Of the rig's expressions, then of the ``eyeLook*`` names.
-    turns : (f, 4), optional
-        Unit quaternions x, y, z, w by which the head turns about its neck.
-
-    Raises
-    ------
-    ValueError
-        If they are not of these shapes, not finite, or beyond what float32 of the file can hold in play.
-    """
-    try:
-        k, given, at = len(rig.names), np.asarray(weights, np.float64), np.asarray(times, np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"animation: expected times (f,) and weights (f, k), got no numbers ({error})") from None
-    whole = k + len(GAZE_NAMES)
-    if given.ndim != 2 or given.shape[1] not in (k, whole):
-        raise ValueError(f"animation: expected weights (f, {k}) or (f, {whole}), got shape {given.shape}")
-    if not (np.abs(given) <= _LARGEST_WEIGHT).all() or not (np.abs(at) <= _LONGEST_S).all():  # nor NaN
-        raise ValueError(
-            f"animation: expected finite weights up to {_LARGEST_WEIGHT:g} and times up to {_LONGEST_S:g} s"
-        )
-    given = np.pad(given, ((0, 0), (0, whole - given.shape[1])))
-    turning = None if turns is None else np.asarray(turns, np.float64)
-    neck = None if turns is None else NECK_MM
-    return SceneAnimation(at, {"head": given}, name="take", turns=turning, neck=neck)
 
 
 def _part(avatar: AvatarStages, name: str, kept: np.ndarray, shapes: Shapes, crop: Crop) -> SceneMesh:
@@ -192,7 +145,6 @@ def _eye(eyes: Eyes, side: int, texture: np.ndarray, shapes: Shapes) -> SceneMes
         uv=eye.uv,
         normals=eye.vertices,
         texture=texture,
-        roughness=0.25,
         targets=np.stack(targets) if targets else None,
         target_names=tuple(looks),
         pivot=eyes.centres[side],
@@ -211,6 +163,12 @@ def _hair(hair: Hair, face: AlignedFace) -> SceneMesh:
         parent="head",
         springs=hair_springs(hair, face),
     )
+
+
+def _cap(cap: Surface) -> SceneMesh:
+    assert cap.colours is not None
+    red, green, blue = cap.colours[0].tolist()
+    return SceneMesh("neck_cap", cap.vertices, cap.faces, color=(red, green, blue))
 
 
 def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[SceneMesh]) -> SceneAnimation:
@@ -236,11 +194,7 @@ def _tracks(rig: Rig, animation: SceneAnimation, shapes: Shapes, meshes: list[Sc
 
 def _plain(mesh: SceneMesh) -> SceneMesh:
     """A mesh in the mean colour that its texture has at its vertices."""
+    if mesh.texture is None:
+        return mesh
     red, green, blue = (uv_colours(mesh).mean(axis=0) / 255).tolist()
     return replace(mesh, texture=None, color=(red, green, blue))
-
-
-def uv_colours(mesh: SceneMesh) -> np.ndarray:
-    """Colours (t, 3), 0..255, that a textured mesh has at its uv."""
-    assert mesh.texture is not None and mesh.uv is not None
-    return np.asarray(sample_image(mesh.texture, uv_to_px(mesh.uv, *mesh.texture.shape[:2])))

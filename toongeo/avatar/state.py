@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import zlib
@@ -12,15 +11,17 @@ from typing import Any
 
 import numpy as np
 
+from toongeo.avatar.field_types import check_field_types
 from toongeo.avatar.report import AvatarReport
 from toongeo.metrics import MeshQuality
 from toongeo.model import EyeballTemplate, MorphableModel
+from toongeo.model.model_checksum import model_checksum
 from toongeo.pipeline import AlignedFace, AlignReport, Eyes, FaceFit, LandmarkNoise, Rig, RigReport
 from toongeo.pipeline.fit.face_fit import FitReport, PhotometricReport
 from toongeo.protocols import FaceParse, HairMask
 from toongeo.render import PerspectiveCamera, ScaledOrthographicCamera
 
-__all__ = ["decode_state", "encode_state", "model_checksum"]
+__all__ = ["decode_state", "encode_state"]
 
 _TIMES = "seconds"  # what a run took is not kept: one input gives one file, bit for bit
 _CLASSES: dict[str, Any] = {
@@ -45,7 +46,7 @@ _CLASSES: dict[str, Any] = {
     )
 }
 # Fields that came later are left out where they are None: a file without them is as it was before.
-_LATER = ("hair", "noise")
+_LATER = ("hair", "noise", "mouth_opens")
 _VERSION = 1
 _MOST_BYTES = 1 << 30  # that a file may ask for
 
@@ -102,16 +103,6 @@ def decode_state(content: bytes, known: Mapping[str, np.ndarray], model: Morphab
         reason = f"{type(error).__name__}: {error}"[:200]
         raise ValueError(f"content: expected the state of an avatar, got other bytes ({reason})") from error
     raise ValueError("model: expected the model with which the avatar was made, got another")
-
-
-def model_checksum(model: MorphableModel) -> str:
-    """SHA-256 of the arrays of a model that an avatar depends on."""
-    digest = hashlib.sha256()
-    for array in (model.mean, model.faces, model.uv, model.uv_faces, model.identity, model.expression):
-        digest.update(f"{array.dtype.str}{array.shape}".encode())
-        digest.update(np.ascontiguousarray(array).data)
-    digest.update("\n".join(model.expression_names).encode())
-    return digest.hexdigest()
 
 
 class _Writer:
@@ -178,7 +169,9 @@ class _Reader:
             return simple[kind][content]
         if kind == "model":
             return self.model
-        return _CLASSES[kind](**{name: self.value(part) for name, part in content.items()})
+        instance = _CLASSES[kind](**{name: self.value(part) for name, part in content.items()})
+        check_field_types(instance)
+        return instance
 
 
 def _packed(array: np.ndarray) -> bytes:

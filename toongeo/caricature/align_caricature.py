@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +12,7 @@ from toongeo.caricature.fit_caricature import fit_caricature
 from toongeo.pipeline.align.align_face import AlignedFace, AlignReport
 from toongeo.pipeline.fit.face_fit import FaceFit
 
-__all__ = ["align_caricature", "aligned"]
+__all__ = ["align_caricature", "aligned", "caricature_of"]
 
 
 def align_caricature(fit: FaceFit, landmarks: NDArray[np.float64]) -> AlignedFace:
@@ -30,7 +32,18 @@ def align_caricature(fit: FaceFit, landmarks: NDArray[np.float64]) -> AlignedFac
     ValueError
         As `fit_caricature`.
     """
-    return aligned(fit_caricature(None, landmarks, start=fit))
+    return aligned(caricature_of(fit, landmarks))
+
+
+def caricature_of(fit: FaceFit, landmarks: NDArray[np.float64]) -> CaricatureFit:
+    """`fit_caricature` from a fit; the last one is kept, since alignment and rig ask for the same."""
+    points = np.ascontiguousarray(landmarks, np.float64)
+    return _kept(fit, points.tobytes())
+
+
+@lru_cache(maxsize=1)
+def _kept(fit: FaceFit, points: bytes) -> CaricatureFit:
+    return fit_caricature(None, np.frombuffer(points).reshape(-1, 2), start=fit)
 
 
 def aligned(face: CaricatureFit) -> AlignedFace:

@@ -33,7 +33,9 @@ from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.protocols import HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
-__all__ = ["fit_caricature"]
+__all__ = ["fit_caricature", "refitted_skin"]
+
+_WEIGHT = 1e5  # lambda of Eq. 14, (px / s)^2 against mm^2
 
 
 def fit_caricature(
@@ -41,7 +43,7 @@ def fit_caricature(
     landmarks: ArrayLike,
     *,
     space: FaceSpace | None = None,
-    weight: float = 1e5,
+    weight: float = _WEIGHT,
     iterations: int = 4,
     start: CaricatureFit | FaceFit | None = None,
     options: CaricatureOptions | None = None,
@@ -134,6 +136,15 @@ def fit_caricature(
         seconds=time.perf_counter() - started,
     )
     return CaricatureFit(V, state.w, tuple(energies), state.camera, state.landmarks, space, state.fit, report)
+
+
+def refitted_skin(start: CaricatureFit, pixels: Floats, options: CaricatureOptions) -> Floats:
+    """Vertices (k, 3) of the space after one turn of `fit_caricature` to other landmarks (68, 2) px.
+
+    Mouth and sockets, which would follow, are left alone.
+    """
+    solver = _Alternation(start.space, pixels, _WEIGHT, options)
+    return solver.run(solver.resumed(start), 1)[0]
 
 
 @dataclass(frozen=True, eq=False)

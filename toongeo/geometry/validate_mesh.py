@@ -21,6 +21,7 @@ MeshLike: TypeAlias = "ArrayLike | trimesh.Trimesh"  # vertices, or a mesh that 
 # Twice the area over the longest edge squared: the sine of the smallest angle, about. Below it, one rounding
 # error decides the normal.
 _DEGENERATE = 1e-12
+_LARGEST = 1e60  # of a coordinate: products of four lengths, of which solvers make sums, stay finite
 
 
 def validate_mesh(
@@ -114,6 +115,8 @@ def validate_vertices(V: object, *, name: str = "V") -> Floats:
             f"{name}: expected finite coordinates, got {(~finite).sum()} rows that are not, "
             f"the first {name}[{(~finite).argmax()}]"
         )
+    if (most := float(np.abs(V).max())) > _LARGEST:
+        raise ValueError(f"{name}: expected coordinates up to {_LARGEST:g}, got {most:g}")
     return V
 
 

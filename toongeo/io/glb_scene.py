@@ -89,6 +89,8 @@ def _mesh(
         texture=_texture(document, material, textures),
         color=tuple(linear_to_srgb(linear)),
         roughness=material["roughnessFactor"],
+        specular=look.get("extensions", {}).get("KHR_materials_specular", {}).get("specularFactor", 1.0),
+        unlit="KHR_materials_unlit" in look.get("extensions", {}),
         targets=np.stack(targets).astype(np.float64) * millimetres if targets else None,
         target_names=tuple(mesh.get("extras", {}).get("targetNames", ())),
         pivot=pivot,

@@ -19,6 +19,7 @@ def page_html(
     title: str,
     presets: Mapping[str, Mapping[str, float]] | None = None,
     live: str | None = None,
+    framed: bool = False,
 ) -> str:
     """One HTML document with viewer, three.js and avatar in it, which asks nothing of a network.
 
@@ -34,6 +35,8 @@ def page_html(
         Become buttons if the file has all their targets.
     live : str, optional
         Address of a WebSocket that weights come from, as of ``toongeo serve``.
+    framed : bool
+        The page stands in a frame, and exchanges weights with the page around it.
 
     Raises
     ------
@@ -53,7 +56,7 @@ def page_html(
     title = title.encode("utf-8", "replace").decode()  # half a character, as of a name in another encoding
     script = (PAGE / "viewer.js").read_text(encoding="utf-8")
     style = (PAGE / "page.css").read_text(encoding="utf-8")
-    settings = {"title": title, "presets": presets or {}, "live": live}
+    settings = {"title": title, "presets": presets or {}, "live": live, "framed": framed}
     return Template((PAGE / "page.html").read_text(encoding="utf-8")).substitute(
         policy=html.escape(_content_policy(script, style, live)),
         title=html.escape(title),

@@ -38,6 +38,10 @@ class SceneMesh:
         sRGB, 0..1, of a mesh without texture (multiplies the texture if there is one).
     roughness
         0..1 of the glTF material.
+    specular
+        0..1: how strongly it mirrors, of what glass does.
+    unlit
+        Whether its colours are shown as they are, in files that can say so.
     targets
         (k, n, 3) mm: what each target at weight 1 adds to the vertices.
     target_names
@@ -67,6 +71,8 @@ class SceneMesh:
     texture: NDArray[np.uint8] | None = None
     color: tuple[float, float, float] = (1.0, 1.0, 1.0)
     roughness: float = 0.9
+    specular: float = 1.0
+    unlit: bool = False
     targets: NDArray[np.floating] | None = None
     target_names: tuple[str, ...] = ()
     pivot: NDArray[np.floating] | None = None
@@ -121,7 +127,10 @@ class SceneMesh:
                 raise ValueError(f"{self._label('texture')}: expected (H, W, 3) uint8, got {got}")
             self._put("texture", texture)
         color = _finite(self._label("color"), self.color, (3,))
-        for label, values in (("color", color), ("roughness", np.asarray(self.roughness))):
+        for label, values in (
+            ("color", color),
+            *((name, np.asarray(getattr(self, name))) for name in ("roughness", "specular")),
+        ):
             if not ((values >= 0) & (values <= 1)).all():
                 raise ValueError(f"{self._label(label)}: expected 0..1, got {values}")
         object.__setattr__(self, "color", tuple(color.tolist()))

@@ -1,6 +1,6 @@
 """Chains of bones on which parts of a mesh swing."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +20,14 @@ class SpringChains:
         Of each chain from its root to the end of its last bone: k - 1 bones.
     weights : (n, c, k - 1)
         Share of each vertex that a bone takes along, 0..1; their sum is at most 1.
+    capsules : (m, 7) mm, model frame
+        Balls that were pulled along a line, which the ends of the bones stay out of: two ends (3,) and a radius. They
+        move as what the chains hang from.
 
     Raises
     ------
     ValueError
-        If shapes do not fit, or a vertex has shares below 0 or a sum beyond 1.
+        If shapes do not fit, a radius is not above 0, or a vertex has shares below 0 or a sum beyond 1.
 
     Examples
     --------
@@ -34,6 +37,7 @@ class SpringChains:
 
     joints: NDArray[np.floating]
     weights: NDArray[np.floating]
+    capsules: NDArray[np.floating] = field(default_factory=lambda: np.zeros((0, 7)))
 
     __repr__ = brief_repr
 
@@ -43,6 +47,10 @@ class SpringChains:
         c, k = self.joints.shape[:2]
         if self.weights.ndim != 3 or self.weights.shape[1:] != (c, k - 1):
             raise ValueError(f"weights: expected (n, {c}, {k - 1}), got {self.weights.shape}")
+        if self.capsules.ndim != 2 or self.capsules.shape[1] != 7:
+            raise ValueError(f"capsules: expected (m, 7), got {self.capsules.shape}")
+        if not (np.isfinite(self.capsules).all() and (self.capsules[:, 6] > 0).all()):
+            raise ValueError("capsules: expected finite numbers with a radius above 0")
         if not np.isfinite(self.joints).all():
             raise ValueError("joints: expected finite numbers")
         total = self.weights.sum((1, 2))

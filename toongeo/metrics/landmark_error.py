@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["IBUG68_PARTS", "landmark_error"]
+__all__ = ["IBUG68_PARTS", "OUTER_EYES", "landmark_error"]
 
 # The iBUG-68 scheme, 0-based.
 IBUG68_PARTS: Mapping[str, range] = MappingProxyType(
@@ -22,7 +22,7 @@ IBUG68_PARTS: Mapping[str, range] = MappingProxyType(
         "total": range(0, 68),
     }
 )
-_OUTER_EYES = (36, 45)  # outer corner of the right eye, of the left eye
+OUTER_EYES = (36, 45)  # outer corner of the right eye, of the left eye
 
 
 def landmark_error(
@@ -91,13 +91,13 @@ def _checked(name: str, values: ArrayLike) -> NDArray[np.float64]:
 
 
 def _outer_eye_distance(truth: NDArray[np.float64]) -> float:
-    if len(truth) <= max(_OUTER_EYES):
+    if len(truth) <= max(OUTER_EYES):
         raise ValueError(f"truth: expected the 68 points of iBUG or a `scale`, got {len(truth)} points")
-    right, left = truth[list(_OUTER_EYES)]
+    right, left = truth[list(OUTER_EYES)]
     distance = float(np.linalg.norm(left - right))
     if not distance > 0:
         raise ValueError(
-            f"truth: expected two different outer eye corners (points {_OUTER_EYES}) or a `scale`, "
+            f"truth: expected two different outer eye corners (points {OUTER_EYES}) or a `scale`, "
             f"got {right.tolist()} and {left.tolist()}"
         )
     return distance

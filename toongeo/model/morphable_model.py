@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo._read_only import read_only, restored
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.anatomy.parts import INNER_PARTS
@@ -98,6 +99,7 @@ class MorphableModel:
     prior: FacePrior | None = None
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
     __setstate__ = restored
 
     def __post_init__(self) -> None:

@@ -7,6 +7,7 @@ from toongeo.pipeline.align import LandmarkNoise as LandmarkNoise
 from toongeo.pipeline.align import align_face as align_face
 from toongeo.pipeline.align import denoise_landmarks as denoise_landmarks
 from toongeo.pipeline.align import fit_cranium as fit_cranium
+from toongeo.pipeline.align import held_out_errors as held_out_errors
 from toongeo.pipeline.fit import FaceFit as FaceFit
 from toongeo.pipeline.fit import FitOptions as FitOptions
 from toongeo.pipeline.fit import JawOptions as JawOptions
@@ -53,6 +54,7 @@ from toongeo.pipeline.rig import neutral_face as neutral_face
 from toongeo.pipeline.rig import rig_mesh as rig_mesh
 from toongeo.pipeline.stylize import STYLES as STYLES
 from toongeo.pipeline.stylize import Style as Style
+from toongeo.pipeline.stylize import match_style as match_style
 from toongeo.pipeline.stylize import stylize as stylize
 from toongeo.pipeline.texture import Iris as Iris
 from toongeo.pipeline.texture import aim_eyes as aim_eyes

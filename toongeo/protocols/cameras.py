@@ -8,7 +8,26 @@ __all__ = ["Camera", "HeadCamera"]
 
 
 class Camera(Protocol):
-    """A map from the model frame (mm) to the image frame (pixels; x right, y down; integer = pixel centre)."""
+    """A map from the model frame (mm) to the image frame (pixels; x right, y down; integer = pixel centre).
+
+    :func:`toongeo.testing.check_camera` checks one; ``render_mesh(surface, camera)`` uses it.
+
+    Examples
+    --------
+    >>> from toongeo.testing import check_camera
+    >>> class FromAbove:
+    ...     "Looks down on the crown, the face towards the bottom of the picture, 2 px a mm."
+    ...     def view(self, points):
+    ...         return np.asarray(points) @ np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]).T
+    ...     def project(self, points):
+    ...         return 2 * self.view(points)[:, :2] * [1, -1] + 256
+    ...     def depth(self, points):
+    ...         return self.view(points)[:, 2]
+    ...     def unproject(self, pixels, depth):
+    ...         seen = np.column_stack([(np.asarray(pixels) - 256) / [2, -2], depth])
+    ...         return seen @ np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+    >>> check_camera(FromAbove())
+    """
 
     def project(self, points: np.ndarray) -> np.ndarray:
         """Pixels (k, 2) of model-frame points (k, 3)."""

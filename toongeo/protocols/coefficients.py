@@ -50,7 +50,22 @@ class Coefficients:
 
 
 class Regressor(Protocol):
-    """Guesses the coefficients of a face; a network, say, or any function."""
+    """Guesses the coefficients of a face; a network, say, or any function.
+
+    :func:`toongeo.testing.check_regressor` checks one; ``fit_3dmm(img, landmarks, regressor=...)`` uses it.
+
+    Examples
+    --------
+    >>> from toongeo.testing import check_regressor
+    >>> class Widest:
+    ...     "The first mode of identity is how wide a face is."
+    ...     def __call__(self, img, landmarks):
+    ...         width, height = np.nanmax(landmarks, 0) - np.nanmin(landmarks, 0)
+    ...         identity = np.zeros(80)
+    ...         identity[0] = np.clip(width / height - 1, -1, 1)
+    ...         return Coefficients(identity=identity)
+    >>> check_regressor(Widest(), picture=False)
+    """
 
     def __call__(self, img: np.ndarray | None, landmarks: np.ndarray) -> Coefficients:
         """Coefficients of the face with landmarks (68, 2) px, NaN where missing.

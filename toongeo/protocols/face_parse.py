@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo.protocols.faces import FittedFace
 
 __all__ = ["FaceLabel", "FaceParse", "FaceParser", "HairFinder", "HairMask"]
@@ -98,6 +99,7 @@ class FaceParse:
     hair: HairMask | None = None
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
 
     def __post_init__(self) -> None:
         labels, confidence = np.array(self.labels), np.array(self.confidence, np.float32)
@@ -122,7 +124,23 @@ class FaceParse:
 
 
 class FaceParser(Protocol):
-    """Cuts a picture into the parts of a face; a network, say, or the classical parser."""
+    """Cuts a picture into the parts of a face; a network, say, or the classical parser.
+
+    :func:`toongeo.testing.check_face_parser` checks one; ``make_avatar(img, parser=...)`` uses it, or its name
+    (:func:`toongeo.plugins.plugin`).
+
+    Examples
+    --------
+    >>> from toongeo.testing import check_face_parser
+    >>> class Box:
+    ...     "All between the landmarks is skin."
+    ...     def __call__(self, img, landmarks, fit=None):
+    ...         labels = np.zeros(img.shape[:2], np.uint8)
+    ...         (left, top), (right, bottom) = np.nanmin(landmarks, 0).astype(int), np.nanmax(landmarks, 0).astype(int)
+    ...         labels[top:bottom, left:right] = FaceLabel.SKIN
+    ...         return FaceParse(labels, np.full(labels.shape, 0.5))
+    >>> check_face_parser(Box())
+    """
 
     def __call__(self, img: np.ndarray, landmarks: np.ndarray, fit: "FittedFace | None" = None) -> FaceParse:
         """Labels of the picture (H, W, 3) uint8 with landmarks (68, 2) px, NaN where missing, and its fitted face."""
@@ -130,7 +148,20 @@ class FaceParser(Protocol):
 
 
 class HairFinder(Protocol):
-    """Finds the hair in a picture; a network, say, or :func:`toongeo.find_hair`."""
+    """Finds the hair in a picture; a network, say, or :func:`toongeo.find_hair`.
+
+    :func:`toongeo.testing.check_hair_finder` checks one; ``make_avatar(img, hair_mask=finder(...).mask)`` uses it.
+
+    Examples
+    --------
+    >>> from toongeo.testing import check_hair_finder
+    >>> class Dark:
+    ...     "What is dark above the eyes is hair."
+    ...     def __call__(self, img, landmarks, fit):
+    ...         above = np.arange(len(img))[:, None] < np.nanmin(landmarks[36:48, 1])
+    ...         return HairMask((img.max(axis=2) < 60) & above, trusted=False, reasons=("darkness proves little",))
+    >>> check_hair_finder(Dark())
+    """
 
     def __call__(self, img: np.ndarray, landmarks: np.ndarray, fit: "FittedFace") -> HairMask:
         """Hair of the head with landmarks (68, 2) px, NaN where missing, in a picture (H, W, 3) uint8.

@@ -58,7 +58,25 @@ class LandmarkDetection:
 
 
 class LandmarkDetector(Protocol):
-    """Finds the faces of a picture and their landmarks; a network, say, or `detect_faces`."""
+    """Finds the faces of a picture and their landmarks; a network, say, or `detect_faces`.
+
+    :func:`toongeo.testing.check_landmark_detector` checks one; ``make_avatar(img, detector=...)`` and
+    ``detect_landmarks(img, detector=...)`` use it, or the name under which a package offers it
+    (:func:`toongeo.plugins.plugin`). Adapters to dlib and MediaPipe: :mod:`toongeo.adapters`.
+
+    Examples
+    --------
+    >>> from toongeo.testing import check_landmark_detector
+    >>> from toongeo.testing.example import example
+    >>> class Remembered:
+    ...     "Knows one picture."
+    ...     def __call__(self, img):
+    ...         picture, points = example()
+    ...         if not np.array_equal(img, picture):
+    ...             return []
+    ...         return [LandmarkDetection(points, np.ones(68), score=1.0)]
+    >>> check_landmark_detector(Remembered())
+    """
 
     def __call__(self, img: np.ndarray) -> list[LandmarkDetection]:
         """The faces of the picture (H, W, 3) uint8, the largest first."""

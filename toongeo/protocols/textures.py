@@ -50,6 +50,18 @@ class TextureGenerator(Protocol):
     """What an expression does to the colours of a face (Chen et al. 2020, section 3.3); a network, say.
 
     It need not know where lids close and lips part, nor draw lashes: :class:`toongeo.ExpressionEditor` does.
+    :func:`toongeo.testing.check_texture_generator` checks one.
+
+    Examples
+    --------
+    >>> from toongeo.testing import check_texture_generator
+    >>> class Blush:
+    ...     "The stronger the expression, the redder the skin."
+    ...     def __call__(self, texture, source, target, geometry):
+    ...         strength = float(np.clip(np.abs(target - source).max(), 0, 1))
+    ...         red = np.minimum(texture * np.array([1.2, 0.9, 0.9]), 255)
+    ...         return red, np.full(texture.shape[:2], 1 - 0.5 * strength)
+    >>> check_texture_generator(Blush())
     """
 
     def __call__(

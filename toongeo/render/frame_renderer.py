@@ -76,6 +76,7 @@ class FrameRenderer:
         self._camera, self._size, self._cull = camera, size, cull_back
         self._light = studio_light() if light is None else np.asarray(light, np.float64)
         self._background = srgb_to_linear(np.asarray(background, np.float64)).astype(np.float32)
+        self._rest = [part.vertices for part in surfaces]
         self._faces = [np.asarray(part.faces) for part in surfaces]
         counts = np.cumsum([0, *(len(part.vertices) for part in surfaces)]).tolist()
         self._parts = [slice(a, b) for a, b in zip(counts[:-1], counts[1:], strict=True)]
@@ -86,6 +87,11 @@ class FrameRenderer:
         self._texels = np.ascontiguousarray(table.corners[:, :, :-3])
         self._albedo = _vertex_colours(table, self._all, counts[-1])
         self._px_per_mm = _px_per_mm(camera, np.concatenate([part.vertices for part in surfaces]))
+
+    @property
+    def rest(self) -> list[Floats]:
+        """Vertices (n, 3) of each surface at rest, as they were given."""
+        return list(self._rest)
 
     def frame(self, vertices: Sequence[NDArray[np.floating]]) -> NDArray[np.uint8]:
         """Picture (size, size, 3) RGB.

@@ -30,7 +30,7 @@ def run(shell, text):
 @pytest.mark.parametrize(
     ("words", "expected"),
     [
-        (["m"], ["make"]),
+        (["ma"], ["make"]),
         (["comp"], ["completion"]),
         (["make", "--sh"], ["--sheet"]),
         (["make", "a.png", "--same"], ["--same-person"]),
@@ -57,7 +57,7 @@ def test_zsh_takes_the_script(script):
 def test_fish_completes(script):
     text = script("fish")
     for line, expected in (
-        ("toongeo m", ["make"]),
+        ("toongeo ma", ["make"]),
         ("toongeo make --cro", ["--crop"]),
         ("toongeo make --crop ", ["bust", "face", "head"]),
         ("toongeo bench tab", ["table1", "table2", "table4"]),

@@ -60,5 +60,5 @@ def test_what_is_no_picture_and_no_landmarks(truth):
 
 def test_without_anywidget_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "anywidget", None)
-    with pytest.raises(ImportError, match=r'pip install "toongeo\[notebook\]"'):
+    with pytest.raises(ImportError, match='pip install "anywidget>='):
         LandmarkEditor(IMG)

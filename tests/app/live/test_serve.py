@@ -220,5 +220,5 @@ def test_messages_that_are_none(message, error):
 
 def test_without_websockets_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "websockets.asyncio.server", None)
-    with pytest.raises(ImportError, match=r'pip install "toongeo\[serve\]"'):
+    with pytest.raises(ImportError, match='pip install "websockets>='):
         load_websockets()

@@ -69,13 +69,40 @@ def test_names_that_would_be_one_file(tmp_path, capsys):
 
 def test_options_reach_the_library(stand_in, tmp_path, monkeypatch):
     model = object()
-    monkeypatch.setattr("toongeo.app.making.read_model.read_model", lambda path: model)
+    monkeypatch.setattr("toongeo.app.commands.make_command._model", lambda path: model)
     monkeypatch.setattr("toongeo.app.making.make_options.MakeOptions.check", lambda *_: None)
     out = ["-o", str(tmp_path / "a.ply"), "--landmarks", POINTS]
-    more = ["--method", "caricature", "--rig", "caricature", "--model", "m.npz", "--crop", "face"]
+    more = ["--method", "caricature", "--rig", "caricature", "--model", "m.npz", "--style", "ink"]
     assert main(["make", PICTURE, *out, *more]) == 0
     ((_, _, options),) = stand_in
     assert (options["method"], options["rig"], options["model"]) == ("caricature", "caricature", model)
+    assert options["style"] == "ink"
+
+
+def test_styles_are_those_of_the_library():
+    from toongeo.app.cli import _parser
+    from toongeo.pipeline.stylize.style import STYLES
+
+    make = next(action for action in _parser()._actions if action.choices and "make" in action.choices).choices["make"]
+    (styles,) = (action.choices for action in make._actions if action.dest == "style")
+    assert set(styles) == set(STYLES)
+
+
+def test_a_drawn_head_is_told_by_its_drawing(stand_in, avatar, tmp_path, monkeypatch):
+    """Held-out points and the sheet are those of what became a head, not of the photograph."""
+    from types import SimpleNamespace
+
+    drawing = SimpleNamespace(img=np.zeros((9, 9, 3), np.uint8), landmarks=np.arange(136.0).reshape(68, 2))
+    styled = SimpleNamespace(
+        **{name: getattr(avatar, name) for name in ("report", "rig", "face", "fit")}, style=drawing
+    )
+    styled.save = lambda *_, **__: None
+    monkeypatch.setattr("toongeo.app.make.make_avatar", lambda *_, **__: styled)
+    seen = []
+    monkeypatch.setattr("toongeo.app.make.held_out_errors", lambda img, points, **_: seen.append((img, points)) or {})
+    arguments = ["--landmarks", POINTS, "-o", str(tmp_path / "a.ply"), "--style", "toon"]
+    assert main(["make", PICTURE, *arguments]) == 0
+    assert seen == [(drawing.img, drawing.landmarks)]
 
 
 def test_json_is_all_that_is_printed(stand_in, tmp_path, capsys, avatar):
@@ -118,10 +145,3 @@ def test_the_fits_of_one_person_are_used(folder, stand_in, tmp_path, monkeypatch
     arguments = ["--landmarks", str(folder), "-o", str(tmp_path / "{name}.ply"), "--same-person"]
     assert main(["make", str(folder), *arguments]) == 0
     assert [options["fit"] for _, _, options in stand_in] == ["one", "two"]
-
-
-def test_a_foreign_model_is_read(shared):
-    from toongeo.app.making.read_model import read_model
-
-    models = shared / "data" / "models"
-    assert read_model(models / "ict_facekit" / "ict_facekit_light.npz").n_named == 57

@@ -147,3 +147,13 @@ def test_bad_faces():
         uniform_laplacian([[0, 1, 3]], 3)
     with pytest.raises(ValueError, match=r"F: expected integers of shape \(m, 3\)"):
         uniform_laplacian([[0, 1]], 3)
+
+
+@pytest.mark.parametrize("thickness", 10.0 ** -np.arange(2.0, 11.5, 0.5))
+def test_thin_triangles_have_the_cotangents_of_their_angles(thickness):
+    """An isosceles triangle of base 2 and height h: cot h at the base, (h^2 - 1) / (2 h) at the tip."""
+    V = np.array([[-1.0, 0, 0], [1, 0, 0], [0, thickness, 0]]) * 17.0 + [3.0, 5.0, -7.0]
+    C = cotangent_laplacian(V, [[0, 1, 2]]).toarray()
+    expected = -(1 / thickness) / 2, (1 - thickness**2) / (4 * thickness)
+    np.testing.assert_allclose([C[0, 2], C[0, 1]], expected, rtol=1e-3)
+    np.testing.assert_allclose(C.sum(axis=1), 0, atol=1e-6 / thickness)

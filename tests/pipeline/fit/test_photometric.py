@@ -564,8 +564,6 @@ def test_what_the_photometric_term_would_undo_is_refused(subject, fitted):
         fit_3dmm([picture, picture], [landmarks, landmarks], photometric=True)
     with pytest.raises(ValueError, match="adjust: expected None with the photometric term"):
         fit_3dmm(picture, landmarks, photometric=True, adjust="expression")
-    with pytest.raises(ValueError, match="fit_options: expected the orthographic camera, got 'perspective'"):
-        photometric_fit(picture, fitted[0], landmarks, fit_options=FitOptions(camera="perspective"))
 
 
 def test_landmarks_of_a_table_are_refused(model, subject, fitted):

@@ -24,7 +24,7 @@ def add_edit(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     whole = "the weights are the whole expression: what the picture shows besides goes"
     edit.add_argument("--absolute", action="store_true", help=whole)
     add_landmarks(edit)
-    edit.set_defaults(run=_edit, also={"path": "--output"})
+    edit.set_defaults(run=_edit)
 
 
 def _presets() -> list[tuple[str, str]]:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from toongeo.app.commands.number_types import sigma
-from toongeo.app.commands.picture_arguments import add_landmarks, add_model
+from toongeo.app.commands.picture_arguments import add_landmarks, add_model, add_style
 
 __all__ = ["add_make"]
 
@@ -25,7 +25,7 @@ def add_make(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") ->
     make.add_argument("--json", action="store_true", help="print the report as JSON; a list for several pictures")
     _add_making(make)
     _add_saving(make)
-    make.set_defaults(run=_make, also={"path": "--output", "meta": "--author", "size": "--texture-size"})
+    make.set_defaults(run=_make, also={"meta": "--author", "size": "--texture-size"})
 
 
 def _add_making(make: argparse.ArgumentParser) -> None:
@@ -41,6 +41,7 @@ def _add_making(make: argparse.ArgumentParser) -> None:
     hair = make.add_mutually_exclusive_group()
     hair.add_argument("--hair-mask", type=Path, metavar="FILE", help="picture of IMAGE's size, white where hair is")
     hair.add_argument("--no-hair", action="store_true", help="build no hair; it stays painted on the head")
+    add_style(make, default=None)
     make.add_argument("--texture-size", type=int, default=1024, metavar="N", help="side of the atlas (default 1024)")
 
 
@@ -63,10 +64,9 @@ def _make(options: argparse.Namespace) -> None:
     from toongeo.app.making.head_jobs import check_jobs, head_jobs
     from toongeo.app.making.make_heads import make_heads
     from toongeo.app.making.make_options import MakeOptions
-    from toongeo.app.making.read_model import read_model
 
     making = MakeOptions(
-        model=None if options.model is None else read_model(options.model),
+        model=None if options.model is None else _model(options.model),
         noise=options.noise,
         snap=options.snap,
         photometric=options.photometric,
@@ -74,6 +74,7 @@ def _make(options: argparse.Namespace) -> None:
         rig=options.rig,
         hair=not options.no_hair,
         hair_mask=options.hair_mask,
+        style=options.style,
         texture_size=options.texture_size,
         format=options.format,
         saving=_saving(options),
@@ -84,6 +85,15 @@ def _make(options: argparse.Namespace) -> None:
     jobs = head_jobs(options.image, options.output, options.landmarks, options.sheet, suffix=suffix)
     check_jobs(jobs, making, one=options.same_person)
     make_heads(jobs, source, making, one=options.same_person)
+
+
+def _model(path: Path) -> Any:
+    from toongeo.model import load_model
+
+    try:
+        return load_model(path)
+    except ValueError as error:  # of its own landmarks, say, which are not those of --landmarks
+        raise ValueError(f"model: {str(error).removeprefix('path: ')}") from error
 
 
 def _saving(options: argparse.Namespace) -> dict[str, Any]:

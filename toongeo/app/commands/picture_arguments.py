@@ -3,7 +3,11 @@
 import argparse
 from pathlib import Path
 
-__all__ = ["SCHEME", "add_landmarks", "add_model"]
+__all__ = ["SCHEME", "add_landmarks", "add_model", "add_style"]
+
+# Those of toongeo.pipeline.STYLES, by hand, so that `toongeo --help` answers at once.
+_STYLES = ("toon", "chibi", "caricature", "ink", "painted")
+
 
 SCHEME = "of the landmarks, such as wflw98 (default auto: by their number)"
 
@@ -20,5 +24,12 @@ def add_landmarks(command: argparse.ArgumentParser) -> None:
 
 def add_model(command: argparse.ArgumentParser) -> None:
     """A morphable model from elsewhere."""
-    models = "a morphable model: .npz of ICT-FaceKit, or .bin of eos with ibug_to_sfm.txt beside it"
-    command.add_argument("--model", type=Path, metavar="FILE", help=models)
+    models = "a morphable model, as toongeo model takes it: BFM, FLAME, ICT-FaceKit, eos ..."
+    command.add_argument("--model", type=Path, metavar="PATH", help=models)
+
+
+def add_style(command: argparse.ArgumentParser, default: str | None) -> None:
+    """How a photograph is drawn."""
+    about = "draw the photograph first, and make the head of the drawing" if default is None else "of the drawing"
+    about += "" if default is None else f" (default {default})"
+    command.add_argument("--style", choices=_STYLES, default=default, help=about)

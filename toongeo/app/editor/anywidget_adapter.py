@@ -1,4 +1,4 @@
-"""The optional package ``anywidget``, with which the editor is shown in notebooks."""
+"""The optional package ``anywidget``, with which the editor and avatars are shown in notebooks."""
 
 from __future__ import annotations
 
@@ -11,8 +11,15 @@ from toongeo.io.page_html import PAGE
 __all__ = ["notebook_widget"]
 
 
-def notebook_widget(settings: Mapping[str, Any], heard: Callable[[Any, Any], None]) -> Any:
-    """A widget that shows the editor.
+def notebook_widget(
+    settings: Mapping[str, Any],
+    heard: Callable[[Any, Any], None] | None = None,
+    *,
+    script: str = "editor.js",
+    style: str | None = "editor.css",
+    name: str = "LandmarkEditor",
+) -> Any:
+    """A widget that shows the editor, or what another script shows.
 
     Parameters
     ----------
@@ -20,6 +27,10 @@ def notebook_widget(settings: Mapping[str, Any], heard: Callable[[Any, Any], Non
         Of the page.
     heard
         Called with the widget and each message of the page.
+    script, style
+        Files of :mod:`toongeo.io.page`.
+    name
+        What needs the widget, for the error.
 
     Raises
     ------
@@ -30,13 +41,15 @@ def notebook_widget(settings: Mapping[str, Any], heard: Callable[[Any, Any], Non
         import anywidget
         import traitlets
     except ImportError as error:
-        raise ImportError(missing_extra("LandmarkEditor", "notebook")) from error
+        raise ImportError(missing_extra(name, "notebook")) from error
 
-    class EditorWidget(anywidget.AnyWidget):
-        _esm = (PAGE / "editor.js").read_text(encoding="utf-8")
-        _css = (PAGE / "editor.css").read_text(encoding="utf-8")
+    class NotebookWidget(anywidget.AnyWidget):
+        _esm = (PAGE / script).read_text(encoding="utf-8")
+        _css = "" if style is None else (PAGE / style).read_text(encoding="utf-8")
         settings = traitlets.Dict().tag(sync=True)
+        weights = traitlets.Dict().tag(sync=True)
 
-    widget = EditorWidget(settings=dict(settings))
-    widget.on_msg(lambda shown, message, buffers: heard(shown, message))
+    widget = NotebookWidget(settings=dict(settings))
+    if heard is not None:
+        widget.on_msg(lambda shown, message, buffers: heard(shown, message))
     return widget

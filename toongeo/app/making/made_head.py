@@ -28,7 +28,7 @@ class MadeHead:
     job : HeadJob
     avatar : Avatar
     held_out : part -> RMS, or None
-        As of :func:`toongeo.avatar.held_out_errors`; None where it does not apply.
+        As of :func:`toongeo.held_out_errors`; None where it does not apply.
     """
 
     job: HeadJob

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from toongeo._brief_repr import brief_repr
+from toongeo.app.commands.path_is import path_is
 from toongeo.avatar.save_avatar import writer_for
 from toongeo.model import MorphableModel
 from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
@@ -22,7 +23,7 @@ class MakeOptions:
 
     Attributes
     ----------
-    model, noise, snap, photometric, method, rig, hair, hair_mask, texture_size
+    model, noise, snap, photometric, method, rig, style, hair, hair_mask, texture_size
         Of :func:`toongeo.make_avatar`; the mask is a file.
     format : str, optional
     saving : Mapping
@@ -37,6 +38,7 @@ class MakeOptions:
     photometric: bool = False
     method: Literal["cartoon", "caricature"] = "cartoon"
     rig: Literal["transfer", "caricature"] = "transfer"
+    style: str | None = None
     hair: bool = True
     hair_mask: Path | None = None
     texture_size: int = 1024
@@ -54,7 +56,8 @@ class MakeOptions:
         ValueError, ImportError
             As :func:`toongeo.make_avatar` and :meth:`toongeo.Avatar.save`, before any work.
         """
-        writer_for(output, self.format, self.saving)
+        with path_is("output"):
+            writer_for(output, self.format, self.saving)
         check_noise(self.noise)
         check_size(self.texture_size)
         if output.suffix.lower() == ".vrm" and self.model is not None and not self.model.has("eyes"):
@@ -62,5 +65,6 @@ class MakeOptions:
 
     def making(self) -> dict[str, Any]:
         """Arguments of :func:`toongeo.make_avatar`."""
-        names = ("model", "noise", "snap", "photometric", "method", "rig", "hair", "hair_mask", "texture_size")
+        names: tuple[str, ...] = ("model", "noise", "snap", "photometric", "method", "rig", "style")
+        names += ("hair", "hair_mask", "texture_size")
         return {name: getattr(self, name) for name in names}

@@ -63,7 +63,7 @@ def _camera(model: MorphableModel, yaw: float, tile: int) -> ScaledOrthographicC
 
 
 def _picture(
-    model: MorphableModel, V: NDArray[np.floating], yaw: float, tile: int, title: str, *, clay: bool = False
+    model: MorphableModel, V: NDArray[np.float64], yaw: float, tile: int, title: str, *, clay: bool = False
 ) -> NDArray[np.uint8]:
     surface = Surface(V.astype(np.float64), model.faces, colours=None if clay else model.albedo_mean)
     view = render_mesh(surface, _camera(model, yaw, tile), tile, shading="clay" if clay else "lit")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
@@ -33,10 +32,11 @@ class RayEngine:
         self.workers, self._ray = workers, ray
         ray.init(address=address, num_cpus=workers if address is None else None, log_to_driver=False)
 
-    def submit(self, work: Callable[..., Any], *arguments: Any) -> Future[Any]:
+    def submit(self, work: Any, *arguments: Any) -> Future[Any]:
         """Begin a call."""
         # A picture that costs a worker is tried again by the batch itself.
-        begun = self._ray.remote(max_retries=0)(work.__call__ if not hasattr(work, "__name__") else work)
+        remote: Any = self._ray.remote(max_retries=0)
+        begun = remote(work if hasattr(work, "__name__") else work.__call__)
         future: Future[Any] = begun.remote(*arguments).future()
         return future
 

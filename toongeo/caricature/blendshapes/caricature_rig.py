@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo.arrays import Floats
+from toongeo.caricature.align_caricature import caricature_of
 from toongeo.caricature.blendshapes.initial_blendshapes import initial_blendshapes
 from toongeo.caricature.blendshapes.optimize_blendshapes import (
     BlendshapeWeights,
@@ -29,6 +30,7 @@ from toongeo.pipeline.rig.build_rig import build_rig
 from toongeo.pipeline.rig.rig import Rig, RigReport
 from toongeo.pipeline.rig.split_gaze import split_gaze
 from toongeo.protocols import LandmarkMapper
+from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["caricature_rig"]
 
@@ -81,7 +83,9 @@ def caricature_rig(
     started = time.perf_counter()
     landmarks = ibug_landmarks(landmarks, scheme)
     model, space = face.model, face_space(face.model)
-    initial = initial_blendshapes(fit_caricature(None, landmarks, space=space), landmarks, mapper=mapper)
+    parallel = isinstance(face.fit.camera, ScaledOrthographicCamera)
+    source = caricature_of(face.fit, landmarks) if parallel else fit_caricature(None, landmarks, space=space)
+    initial = initial_blendshapes(source, landmarks, mapper=mapper)
     D_normal = model.expression[: model.n_named, space.vertices].astype(np.float64)
     D = initial.vertices[1:] - initial.vertices[0]
     weights = _WEIGHTS if weights is None else weights

@@ -25,8 +25,9 @@ class AvatarPuppet:
 
     def __init__(self, avatar: Avatar, size: int = 512) -> None:
         self._animator = Animator(avatar, limits=None)
-        self._hair = () if avatar.hair is None else (avatar.hair.vertices,)
         self._renderer = avatar.frame_renderer(size)
+        # Behind the head and its eyes come hair and the end of the neck, which move only with the head.
+        self._still = self._renderer.rest[1 + len(avatar.eyes.templates) :]
 
     def frame(self, weights: ArrayLike, head: ArrayLike | None = None) -> NDArray[np.uint8]:
         """Picture (size, size, 3) RGB.
@@ -39,7 +40,7 @@ class AvatarPuppet:
             Yaw, pitch and roll, by which the head turns about the neck: see `head_rotation`.
         """
         row = np.asarray(weights, np.float64)
-        parts = [self._animator.frame(row), *self._animator.eye_frames(row), *self._hair]
+        parts = [self._animator.frame(row), *self._animator.eye_frames(row), *self._still]
         if head is not None:
             turn = head_rotation(head)
             parts = [(part - NECK_MM) @ turn.T + NECK_MM for part in parts]

@@ -7,10 +7,12 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
-from toongeo.arrays import Floats, Integers
+from toongeo.arrays import Floats, Integers, Mask
 from toongeo.geometry.validate_mesh import MeshLike, degenerate_triangles, validate_mesh
 
 __all__ = ["cotangent_laplacian"]
+
+_THIN = 1e-6  # sine of the smallest angle: libigl loses the area below 1e-8
 
 
 def cotangent_laplacian(V: MeshLike, F: ArrayLike | None, *, clamp: float | None = None) -> sp.csr_matrix:
@@ -53,10 +55,12 @@ def cotangent_laplacian(V: MeshLike, F: ArrayLike | None, *, clamp: float | None
     if clamp is not None and not 0 < clamp <= 1:
         raise ValueError(f"clamp: expected a number in (0, 1] or None, got {clamp}")
     V, F = validate_mesh(V, F, nondegenerate=clamp is None)
-    C = _rows(igl.cotmatrix(V, F))
     if clamp is None:
+        thin = igl.doublearea(V, F) <= _THIN * igl.squared_edge_lengths(V, F).max(axis=1)
+        C = _with_thin(V, F, thin) if thin.any() else _rows(igl.cotmatrix(V, F))
         C.data *= -1
         return C
+    C = _rows(igl.cotmatrix(V, F))
     if not np.isfinite(C.data).all():  # one triangle without area is enough
         flat = degenerate_triangles(V, F)
         C = _with_flat(_rows(igl.cotmatrix(V, F[~flat])), V, F[flat])
@@ -66,6 +70,20 @@ def cotangent_laplacian(V: MeshLike, F: ArrayLike | None, *, clamp: float | None
 def _rows(C: sp.csc_matrix) -> sp.csr_matrix:
     """A symmetric matrix by rows, without a copy."""
     return sp.csr_matrix((C.data, C.indices, C.indptr), shape=C.shape)
+
+
+def _with_thin(V: Floats, F: Integers, thin: Mask) -> sp.csr_matrix:
+    """libigl's matrix of a mesh with thin triangles, of which it loses the area: it takes it from lengths of edges."""
+    rest = F[~thin]
+    C = _rows(igl.cotmatrix(V, rest)) if len(rest) else sp.csr_matrix((len(V), len(V)))
+    for k in range(3):
+        tip, i, j = (F[thin][:, (k + step) % 3] for step in range(3))
+        a, b = V[i] - V[tip], V[j] - V[tip]
+        half = 0.5 * (a * b).sum(axis=1) / np.linalg.norm(np.cross(a, b), axis=1)
+        weights = np.concatenate([half, half, -half, -half])
+        places = np.concatenate([i, j, i, j]), np.concatenate([j, i, i, j])
+        C = sp.csr_matrix(C + sp.csr_matrix((weights, places), shape=(len(V), len(V))))
+    return C
 
 
 def _clamped(C: sp.csr_matrix, clamp: float) -> sp.csr_matrix:

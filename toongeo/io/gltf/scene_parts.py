@@ -147,7 +147,16 @@ def _material(builder: GlbBuilder, mesh: SceneMesh, textures: dict[bytes, int], 
         tiled = mesh.uv is not None and bool((np.abs(mesh.uv - 0.5) > 0.5 + _BORDER).any())
         look["baseColorTexture"] = {"index": _texture(builder, mesh.texture, textures, picture, tiled=tiled)}
     both = True if mesh.double_sided else None
-    return builder.add("materials", name=mesh.name, pbrMetallicRoughness=look, doubleSided=both)
+    extensions: dict[str, Any] = {}
+    if mesh.unlit:
+        extensions["KHR_materials_unlit"] = {}
+    elif mesh.specular != 1.0:  # what is unlit mirrors nothing
+        extensions["KHR_materials_specular"] = {"specularFactor": float(mesh.specular)}
+    for extension in extensions:
+        builder.use(extension)
+    return builder.add(
+        "materials", name=mesh.name, pbrMetallicRoughness=look, doubleSided=both, extensions=extensions or None
+    )
 
 
 def _texture(

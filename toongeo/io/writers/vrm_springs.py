@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.io.scene import Scene, SceneMesh
+from toongeo.io.scene import METRES, Scene, SceneMesh
 from toongeo.io.split_seams import split_seams
 
 __all__ = ["followed_bones", "spring_entry", "spring_rows"]
@@ -55,17 +55,42 @@ def followed_bones(mesh: SceneMesh, order: Mapping[str, int], still: str) -> tup
     return bones, shares
 
 
-def spring_entry(scene: Scene, nodes: Mapping[str, int]) -> dict[str, Any] | None:
-    """The extension; None if nothing swings. ``nodes`` gives the node of each bone by its name."""
-    springs = [
-        {
-            "name": f"{mesh.name}_{chain}",
-            "joints": [{"node": nodes[_name(mesh, chain, k)], **_GENTLE} for k in range(len(joints))],
-        }
-        for mesh in scene.meshes
-        for chain, joints in enumerate(mesh.springs.joints if mesh.springs is not None else ())
-    ]
-    return {"specVersion": "1.0", "springs": springs} if springs else None
+def spring_entry(
+    scene: Scene, nodes: Mapping[str, int], parent: str, place: NDArray[np.floating]
+) -> dict[str, Any] | None:
+    """The extension; None if nothing swings. ``nodes`` gives the node of each bone by its name.
+
+    ``parent`` is the bone at ``place`` (3,), mm, that the chains hang from and that carries what they stay out of.
+    """
+    springs: list[dict[str, Any]] = []
+    colliders: list[dict[str, Any]] = []
+    groups: list[dict[str, Any]] = []
+    for mesh in scene.meshes:
+        if mesh.springs is None:
+            continue
+        found = [{"node": nodes[parent], "shape": {"capsule": _capsule(row, place)}} for row in mesh.springs.capsules]
+        for chain, joints in enumerate(mesh.springs.joints):
+            entry = {
+                "name": f"{mesh.name}_{chain}",
+                "joints": [{"node": nodes[_name(mesh, chain, k)], **_GENTLE} for k in range(len(joints))],
+            }
+            springs.append(entry | ({"colliderGroups": [len(groups)]} if found else {}))
+        if found:
+            groups.append({"name": mesh.name, "colliders": [len(colliders) + k for k in range(len(found))]})
+            colliders += found
+    if not springs:
+        return None
+    around = {"colliders": colliders, "colliderGroups": groups} if groups else {}
+    return {"specVersion": "1.0", **around, "springs": springs}
+
+
+def _capsule(row: NDArray[np.floating], place: NDArray[np.floating]) -> dict[str, Any]:
+    start, end, radius = row[:3], row[3:6], float(row[6])
+    return {
+        "offset": ((start - place) * METRES).tolist(),
+        "radius": radius * METRES,
+        "tail": ((end - place) * METRES).tolist(),
+    }
 
 
 def _name(mesh: SceneMesh, chain: int, joint: int) -> str:

@@ -62,7 +62,7 @@ def material_files(path: Path, scene: Scene, owner: str) -> dict[str | os.PathLi
     materials = [f"# {side_mark(owner)}"]
     for number, mesh in enumerate(scene.meshes):
         materials += [f"newmtl material_{number}", f"Kd {' '.join(map(repr, mesh.color))}"]
-        materials += ["Ks 0 0 0", "d 1", "illum 1"]
+        materials += ["Ks 0 0 0", "d 1", f"illum {0 if mesh.unlit else 1}"]
         if mesh.texture is None:
             continue
         key = str(mesh.texture.shape).encode() + mesh.texture.tobytes()

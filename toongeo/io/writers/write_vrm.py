@@ -43,6 +43,8 @@ _PRESETS = (
 )
 
 
+# Of MToon: light from all sides counts alike, and nothing shines at the edges.
+_EVEN = {"shadingToonyFactor": 0.9, "giEqualizationFactor": 1.0, "parametricRimColorFactor": [0.0, 0.0, 0.0]}
 _EMOTIONS = ("happy", "angry", "sad", "relaxed", "surprised")
 # Targets by the beginning of their names; a wide eye does not close in a blink, an open jaw opens further in a vowel.
 _OVERRIDES = {
@@ -68,7 +70,8 @@ def write_vrm(
     The bones that a humanoid must have are there, in T-pose where those of an adult of 1.7 m are, in metres, the
     ground at y = 0 and the face along +Z. All meshes are skinned to the head's bone, neck included; ``eye_left`` and
     ``eye_right`` to bones of their own at their pivots, which turn them. Meshes with ``springs``
-    have the bones of these, which hang from the head's and swing (``VRMC_springBone``).
+    have the bones of these, which hang from the head's, swing, and stay out of their capsules (``VRMC_springBone``).
+    Those that are unlit have MToon materials.
 
     Parameters
     ----------
@@ -100,11 +103,14 @@ def write_vrm(
     binds = {name: _binds(scene, name, weights) for name, weights in expressions.items()}
     builder = GlbBuilder()
     # Skins hold the places of bones, and what they move stands on its own.
-    still = Scene(tuple(replace(mesh, pivot=None, parent=None) for mesh in scene.meshes))
+    free = (replace(mesh, pivot=None, parent=None) for mesh in scene.meshes)
+    # MToon tells all about the light; beside it no other such extension may stand.
+    still = Scene(tuple(replace(mesh, unlit=False, specular=1.0) if mesh.unlit else mesh for mesh in free))
     add_scene(builder, still, GlbOptions(normal_deltas=normal_deltas, tolerance_mm=tolerance_mm, picture=picture))
     bones, nodes = _add_bones(builder, scene)
     head = _bones()["Head"][2]
     middle = np.mean([_pivot(scene, eye) for _, eye in _EYES.values()], axis=0)
+    _add_toon(builder, scene)
     builder.use("VRMC_vrm")
     builder.json["extensions"] = {
         "VRMC_vrm": {
@@ -118,11 +124,23 @@ def write_vrm(
             "lookAt": _look_at((middle - head) * METRES, *gaze_degrees),
         }
     }
-    springs = spring_entry(scene, nodes)
+    springs = spring_entry(scene, nodes, "Head", head)
     if springs is not None:
         builder.use("VRMC_springBone")
         builder.json["extensions"]["VRMC_springBone"] = springs
     atomic_write({path: builder.encode()})
+
+
+def _add_toon(builder: GlbBuilder, scene: Scene) -> None:
+    """MToon for what is unlit: in the light and in its shade the same colours."""
+    for mesh, material in zip(scene.meshes, builder.json["materials"], strict=True):
+        if not mesh.unlit:
+            continue
+        base = material["pbrMetallicRoughness"]
+        shade = {"shadeMultiplyTexture": base["baseColorTexture"]} if "baseColorTexture" in base else {}
+        toon = {"specVersion": "1.0", "shadeColorFactor": base["baseColorFactor"][:3], **shade}
+        material["extensions"] = {"VRMC_materials_mtoon": toon | _EVEN}
+        builder.use("VRMC_materials_mtoon")
 
 
 def _binds(scene: Scene, name: str, weights: Mapping[str, float]) -> dict[str, Any]:

@@ -7,3 +7,4 @@ from toongeo.pipeline.align.denoise_landmarks import DenoisedLandmarks as Denois
 from toongeo.pipeline.align.denoise_landmarks import LandmarkNoise as LandmarkNoise
 from toongeo.pipeline.align.denoise_landmarks import denoise_landmarks as denoise_landmarks
 from toongeo.pipeline.align.fit_cranium import fit_cranium as fit_cranium
+from toongeo.pipeline.align.held_out_errors import held_out_errors as held_out_errors

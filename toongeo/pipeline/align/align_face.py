@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo._read_only import read_only, restored
 from toongeo.geometry import laplacian_align, vertex_normals
 from toongeo.model import MorphableModel
@@ -23,6 +24,7 @@ from toongeo.pipeline.align.denoise_landmarks import LandmarkNoise, Noise, denoi
 from toongeo.pipeline.align.keep_ears_rigid import keep_ears_rigid
 from toongeo.pipeline.align.keep_rims_apart import keep_rims_apart
 from toongeo.pipeline.align.keep_teeth_inside import keep_teeth_inside
+from toongeo.pipeline.align.noise.curve_points import with_curve_points
 from toongeo.pipeline.align.symmetric_flow import symmetric_flow
 from toongeo.pipeline.align.unfolded_start import unfolded_start
 from toongeo.pipeline.fit.face_fit import FaceFit
@@ -79,6 +81,7 @@ class AlignedFace:
     report: AlignReport
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
     __setstate__ = restored
 
     def __post_init__(self) -> None:
@@ -127,7 +130,7 @@ def align_face(
     ----------
     fit : FaceFit
     landmarks : (68, 2) float, px
-        NaN rows are missing and anchor nothing.
+        NaN rows are missing. One on the jaw, a brow or the nose whose neighbours are there is filled in from these.
     weight : float
         Lambda of Eq. 10. The default holds the anchors to about a hundredth of a pixel.
     laplacian : {"uniform", "cotangent"}
@@ -169,6 +172,7 @@ def align_face(
     V, at = fit.vertices, fit.landmark_vertices
     if flow:
         V, at = symmetric_flow(fit.model, fit.camera, V, at, landmarks, depth, slide)
+        landmarks = with_curve_points(landmarks, fit.camera.project(V[at]))
     elif slide:
         at = visible_contour(fit.model, fit.camera, _anchored(fit, V, at, landmarks, weight, laplacian), at)
     aligned = _anchored(fit, V, at, landmarks, weight, laplacian)

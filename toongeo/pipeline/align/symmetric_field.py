@@ -108,10 +108,16 @@ def _covariance(X: np.ndarray, Y: np.ndarray, prior: FieldPrior) -> np.ndarray:
 def _push(X: np.ndarray, Y: np.ndarray, W: np.ndarray, prior: FieldPrior) -> np.ndarray:
     """``sum_j K(x_i, y_j) w_j`` (n, 3) without the 3x3 blocks."""
     a, c = np.sqrt(3) / prior.reach, prior.growth
-    scaled = a * cdist(X, Y)
-    fade = np.exp(-scaled)
-    pushed = ((1 + scaled) * fade) @ W
-    along = fade * (X @ W.T - (Y * W).sum(1))
+    scaled = cdist(X, Y)  # large, so it is worked on where it lies
+    scaled *= a
+    fade = np.negative(scaled)
+    np.exp(fade, out=fade)
+    scaled += 1
+    scaled *= fade
+    pushed = scaled @ W
+    along = X @ W.T
+    along -= (Y * W).sum(1)
+    along *= fade
     pushed -= c * a**2 * (X * along.sum(1)[:, None] - along @ Y)
     pushed += prior.linear * (W.sum(0) + (1 - 2 * c / 3) * (X @ (Y.T @ W)))
     return pushed + prior.linear * c / 3 * (X @ (W.T @ Y) + X * (Y * W).sum())

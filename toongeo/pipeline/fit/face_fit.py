@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo._read_only import read_only, restored
+from toongeo.model.default_model import default_model
+from toongeo.model.model_checksum import model_checksum
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.fit_dict import camera_dict, checked_model, plain, read_camera, read_report, report_dict
+from toongeo.pipeline.fit.fit_file import read_fields, write_fields
 from toongeo.protocols import HeadCamera
 
 __all__ = ["FaceFit", "FitReport", "PhotometricReport"]
@@ -126,6 +133,7 @@ class FaceFit:
     photometric: PhotometricReport | None = None
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
     __setstate__ = restored
 
     def __post_init__(self) -> None:
@@ -151,7 +159,68 @@ class FaceFit:
         """Mask (n,) of a named region of the model, such as ``"face"`` or ``"lips"``."""
         return self.model.region(name)
 
+    def to_dict(self) -> dict[str, Any]:
+        """All of the fit but the model, of which it holds a checksum: numbers, texts, lists, mappings and None."""
+        arrays = ("identity", "expression", "landmark_vertices", "albedo", "light")
+        return {
+            "model": model_checksum(self.model),
+            **{name: plain(getattr(self, name)) for name in arrays},
+            "camera": camera_dict(self.camera),
+            "report": report_dict(self.report),
+            "photometric": report_dict(self.photometric),
+        }
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write ``.json`` or ``.npz``, for :meth:`load`: bit for bit, and nothing in it is ever executed.
+
+        Raises
+        ------
+        ValueError
+            If the suffix is neither, or the camera is none of the library's.
+        OSError
+            If the file cannot be written; nothing half-written is left.
+        """
+        write_fields(path, self.to_dict())
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], *, model: MorphableModel | None = None) -> FaceFit:
+        """Read what :meth:`save` wrote.
+
+        Parameters
+        ----------
+        path
+            ``.json`` or ``.npz``.
+        model : MorphableModel, optional
+            The model of the fit, if it is not :func:`toongeo.default_model`.
+
+        Raises
+        ------
+        ValueError
+            If the file is no fit, or one of another model.
+        OSError
+            If it cannot be read.
+        """
+        content = read_fields(path)
+        try:
+            return cls(
+                identity=np.array(content["identity"], np.float64),
+                expression=np.array(content["expression"], np.float64),
+                camera=read_camera(content["camera"]),
+                landmark_vertices=np.array(content["landmark_vertices"], np.int64),
+                model=checked_model(content, default_model() if model is None else model),
+                report=read_report(FitReport, content["report"]),
+                albedo=_array(content["albedo"]),
+                light=_array(content["light"]),
+                photometric=read_report(PhotometricReport, content["photometric"]),
+            )
+        except (LookupError, TypeError, AttributeError) as error:
+            raise ValueError(f"path: expected a fit that was saved, got {path} ({error})") from error
+
     def expression_weights(self) -> dict[str, float]:
         """The named expressions with their weights in [0, 1]."""
         named = self.model.expression_names[: self.model.n_named]
         return {name: float(weight) for name, weight in zip(named, self.expression, strict=False)}
+
+
+def _array(values: list[Any] | None) -> NDArray[np.float64] | None:
+    return None if values is None else np.array(values, np.float64)

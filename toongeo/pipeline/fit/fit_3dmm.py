@@ -78,8 +78,8 @@ def fit_3dmm(
         If the landmarks are not numbers, have another shape, hold infinities, are fewer than 6, coincide, lie on a
         line or outside the picture; the picture is not (H, W, 3) uint8; the algorithm is not known. If a regressor
         returns something else than coefficients, or of another shape. If there are several pictures, or no landmarks
-        and no face or no picture to find them in. If ``photometric`` is asked for without a picture, with ``adjust``, a
-        landmark table or a perspective camera.
+        and no face or no picture to find them in. If ``photometric`` is asked for without a picture, with ``adjust`` or
+        a landmark table.
     RuntimeError
         If the optimizer fails.
 

@@ -16,6 +16,7 @@ from toongeo.model.ibug68 import INNER, OUTER_EYES
 from toongeo.pipeline.fit.face_fit import FaceFit, PhotometricReport
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
+from toongeo.pipeline.fit.photometric.parallel_view import in_perspective, parallel_view
 from toongeo.pipeline.fit.photometric.photometric_problem import PhotometricProblem
 from toongeo.pipeline.fit.photometric_options import PhotometricOptions
 
@@ -47,8 +48,8 @@ def photometric_fit(
     img : (H, W, 3) uint8
         RGB, sRGB encoded.
     fit : FaceFit
-        From `fit_3dmm` with the same landmarks. A perspective camera is replaced by the scaled orthographic one that
-        agrees with it at the origin of the head.
+        From `fit_3dmm` with the same landmarks. Of a perspective camera the focal length and the principal point are
+        kept: the picture is resampled to a parallel view with the depth of this fit, and refined there.
     landmarks : (68, 2) array_like, px
         NaN rows are missing.
     mask : (H, W) array_like of bool or float in [0, 1], optional
@@ -71,7 +72,7 @@ def photometric_fit(
     ValueError
         If the picture is not (H, W, 3) uint8, the mask has another size or other values, nothing of the face is in
         both picture and mask, the landmarks are not 68 or not those of a face in the picture (see
-        `toongeo.io.check_landmarks`), or ``fit_options`` ask for a perspective camera or a landmark table.
+        `toongeo.io.check_landmarks`), or ``fit_options`` ask for a landmark table.
     RuntimeError
         If the optimizer fails.
 
@@ -86,19 +87,21 @@ def photometric_fit(
     confidence = _checked_mask(mask, img.shape[:2])
     pixels = ibug_landmarks(landmarks, scheme)
     check_landmarks(pixels, img.shape)
-    fit_options = fit_options or FitOptions()
-    if fit_options.camera != "orthographic":
-        raise ValueError(f"fit_options: expected the orthographic camera, got {fit_options.camera!r}")
+    fit_options = replace(fit_options or FitOptions(), camera="orthographic", focal_px=None, principal_point=None)
     if not isinstance(fit_options.scheme, str):
         raise ValueError("fit_options: expected a scheme by name, whose 68 points these are, got a table")
     with one_thread():
-        problem = PhotometricProblem.of(img, fit, pixels, confidence, options or PhotometricOptions(), fit_options)
+        seen = parallel_view(img, confidence, pixels, fit)
+        problem = PhotometricProblem.of(
+            seen.img, seen.fit, seen.pixels, seen.confidence, options or PhotometricOptions(), fit_options
+        )
         solution = problem.solve()
     unknowns = problem.landmarks.unknowns
+    found = problem.landmarks.frame.camera(solution.z, unknowns, problem.landmarks.principal_point)
     refined = FaceFit(
         identity=solution.z[unknowns.identity],
         expression=solution.z[unknowns.expression],
-        camera=problem.landmarks.frame.camera(solution.z, unknowns, problem.landmarks.principal_point),
+        camera=in_perspective(found, fit.camera),
         landmark_vertices=solution.landmark_vertices,
         model=fit.model,
         report=fit.report,

@@ -22,6 +22,7 @@ class PhotometricOptions:
         ``w_p = w_r N (noise / s) / s^2`` in Eq. 3 (Pan et al. 2024), where the standard deviation s of the
         residuals is estimated in each pass. So a picture that the model explains well counts much, a drawing
         little. N is far below the number of samples, because the errors of a rendering are alike over whole regions.
+        With more than 100 scans with blotches that no albedo mode has come out worse than from landmarks alone.
     noise : float
         Least standard deviation of a residual, sRGB (0..1), for each channel.
     albedo_weight : float
@@ -51,11 +52,11 @@ class PhotometricOptions:
         If one of them is not a finite positive number.
     """
 
-    independent_samples: float = 20.0
+    independent_samples: float = 100.0
     noise: float = 0.003
     albedo_weight: float = 3e-6
     light_weight: float = 1e-5
-    passes: int = 4
+    passes: int = 8
     samples: int = 1500
     resolution: float = 0.6
     blur: float = 0.6

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.pipeline.landmarks.detect_faces import detect_faces
+from toongeo.plugins import plugin
 from toongeo.protocols import LandmarkDetection, LandmarkDetector
 
 __all__ = ["NoFaceError", "detect_landmarks"]
@@ -14,7 +15,7 @@ class NoFaceError(ValueError):
 
 
 def detect_landmarks(
-    img: NDArray[np.uint8], *, face: int = 0, detector: LandmarkDetector | None = None
+    img: NDArray[np.uint8], *, face: int = 0, detector: str | LandmarkDetector | None = None
 ) -> LandmarkDetection:
     """The 68 landmarks of a face, and how far each is to be trusted.
 
@@ -23,8 +24,9 @@ def detect_landmarks(
     img : (H, W, 3) uint8 RGB
     face : int
         Which face, if there are several: 0 is the largest.
-    detector : LandmarkDetector, optional
-        :func:`detect_faces`, which needs no network, unless another is given.
+    detector : LandmarkDetector or str, optional
+        :func:`detect_faces`, which needs no network, unless another is given, or the name of one that an installed
+        package offers (:mod:`toongeo.plugins`).
 
     Returns
     -------
@@ -35,7 +37,7 @@ def detect_landmarks(
     NoFaceError
         A ValueError: if no face was found, or not so many.
     ValueError
-        If the picture is not (H, W, 3) uint8, or `face` is negative.
+        If the picture is not (H, W, 3) uint8, `face` is negative, or no package offers such a detector.
 
     Examples
     --------
@@ -47,7 +49,7 @@ def detect_landmarks(
     """
     if face < 0:
         raise ValueError(f"face: expected 0 for the largest face, 1 for the next, ..., got {face}")
-    found = (detector or detect_faces)(img)
+    found = (plugin(detector, "detector") or detect_faces)(img)
     if len(found) <= face:
         count = {0: "no face was found", 1: "only one face was found"}.get(
             len(found), f"only {len(found)} faces were found"

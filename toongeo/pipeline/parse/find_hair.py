@@ -14,12 +14,14 @@ from toongeo.io.check_image import check_image
 from toongeo.pipeline.fit.fit_3dmm import fit_3dmm
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.parse.completed_landmarks import completed_landmarks
+from toongeo.pipeline.parse.face_zones import face_zones
 from toongeo.pipeline.parse.given_hair import given_hair
 from toongeo.pipeline.parse.hair.hair_model import hair_model
 from toongeo.pipeline.parse.hair.hair_trust import distrust
 from toongeo.pipeline.parse.hair.hair_view import hair_view
 from toongeo.pipeline.parse.hair.head_zones import head_zones
 from toongeo.pipeline.parse.hair.segment_hair import segment_hair
+from toongeo.pipeline.parse.head_and_skin import head_and_skin
 from toongeo.pipeline.parse.masks import signed_distance
 from toongeo.pipeline.parse.working_view import WorkingView
 from toongeo.protocols import FittedFace, HairMask
@@ -43,10 +45,13 @@ def find_hair(
     """Which pixels of a picture are hair, and whether hair can be built from them.
 
     The head's surroundings are cut into superpixels; two sets of boosted trees, trained on renders of the template
-    alone, say how likely each is hair or a hat, by its colour, texture and place and by what is around it; two
-    different cuts follow its outlines. Hair grows on the head: brows and crumbs are left out, and below the chin counts
-    only what hangs from above, not coats and collars. A mask is trusted where the two cuts agree, the trees are
-    sure, the picture shows its outline, and the hair tops the head. Where the trees see hair nowhere it is empty.
+    alone, say how likely each is hair or a hat, by its colour, texture and place and by what is around it. Where it
+    lies on the head is told by the head that is cut out of the picture, as drawn crowns are lower and narrower than
+    fitted ones; its skin is no hair. Two cuts follow the outlines, by colours and by GrabCut, and where they disagree a
+    third one by edges alone; the two that are most alike make the mask. Hair grows on the head: brows and crumbs are
+    left out, and below the chin counts only what hangs from above, not coats and collars. A mask is trusted where the
+    cuts agree, the trees are sure, head less skin bears it out, the picture shows its outline, the hair tops the head,
+    and what hangs has the hair's colours. Where the trees see hair nowhere it is empty.
 
     Parameters
     ----------
@@ -88,7 +93,8 @@ def find_hair(
     points = completed_landmarks(given, face)
     view = hair_view(img, face)
     with one_thread():
-        found = segment_hair(view, head_zones(view, points, face), hair_model())
+        cut = head_and_skin(view, face_zones(view, points, face))
+        found = segment_hair(view, head_zones(view, points, face), cut, hair_model())
     seen = found.measures.inside >= _LEAST
     hair, hat = (_enlarged(view, part & seen, img.shape) for part in (found.hair, found.hat))
     alpha = np.zeros(img.shape[:2], np.float32)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from toongeo._brief_repr import brief_repr
+from toongeo._notebook_png import notebook_png
 from toongeo._read_only import read_only, restored
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.model.expression_schemes import SCHEMES
@@ -33,6 +34,8 @@ class RigReport:
     matched, partnered, distance : float
         Of a head that was modelled elsewhere: shares of the template's face and of its own vertices that found a
         partner on the other, and the mean distance of those, in the head's unit.
+    mouth_opens : bool
+        Of such a head: False if its lips are one surface, which can only be stretched.
     """
 
     seconds: float = 0.0
@@ -42,6 +45,7 @@ class RigReport:
     matched: float | None = None
     partnered: float | None = None
     distance: float | None = None
+    mouth_opens: bool | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +74,7 @@ class Rig:
     report: RigReport
 
     __repr__ = brief_repr
+    _repr_png_ = notebook_png
     __setstate__ = restored
 
     def __post_init__(self) -> None:

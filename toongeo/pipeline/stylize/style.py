@@ -40,6 +40,9 @@ class Style:
         How flat the skin is: 1 only in tones.
     big_eyes : bool
         Irises as tall as the opening, in tall ellipses.
+    exaggeration : float
+        Of what is special about the face, as a part of its deviation from the mean face: a caricature has more than all
+        of it, and styles that make faces alike give some back.
     brush : float
         Strength of brush marks along the flow.
     ink : bool
@@ -66,6 +69,7 @@ class Style:
     shading: float = 0.0
     flatness: float = 0.9
     big_eyes: bool = False
+    exaggeration: float = 0.0
     brush: float = 0.0
     ink: bool = False
 
@@ -83,7 +87,7 @@ class Style:
 
 
 STYLES = {
-    "toon": Style(big_eyes=True),
+    "toon": Style(big_eyes=True, exaggeration=0.15),
     "chibi": Style(
         tones=2,
         levels=4,
@@ -102,8 +106,10 @@ STYLES = {
         flatness=1.0,
         outlines=0.7,
         big_eyes=True,
+        exaggeration=0.4,
     ),
     "caricature": Style(
+        exaggeration=1.3,
         shading=0.6,
         flatness=0.8,
         line=0.010,

@@ -26,11 +26,10 @@ from toongeo.pipeline.stylize.velocity_warp import VelocityWarp, velocity_warp
 from toongeo.pipeline.texture import find_irises
 from toongeo.protocols import Stylized
 
-__all__ = ["check_style", "stylize"]
+__all__ = ["check_strength", "check_style", "stylize", "subject_for"]
 
 _LARGEST = 2_000_000  # pixels that are drawn; larger pictures are drawn at this size and enlarged
 _STRONGEST = 2.0
-_EXAGGERATION = 1.3  # of the deviation from the mean face, in a caricature of strength 1: E_error grows beyond
 # Passes and colour tolerance (Lab) of the abstraction: paintings keep more.
 _PASSES, _TOLERANCE = 4, 9.0
 _PAINTED_PASSES, _PAINTED_TOLERANCE = 3, 7.0
@@ -95,23 +94,34 @@ def stylize(
     """
     check_image(img)
     look = check_style(style)
-    if not (isinstance(strength, numbers.Real) and 0 <= strength <= _STRONGEST):
-        raise ValueError(f"strength: expected a number in [0, {_STRONGEST:g}], got {strength!r}")
+    check_strength(strength)
     points = ibug_landmarks(given_or_found(img, landmarks, scheme), scheme)
     fit = fit_3dmm(img, points)
     points = completed_landmarks(points, fit)
-    displacement = _EXAGGERATION * exaggerated(points, fit) if style == "caricature" else None
+    displacement = look.exaggeration * exaggerated(points, fit) if look.exaggeration else None
     warp = velocity_warp((img.shape[0], img.shape[1]), points, style_rules()[style], strength, displacement)
     if strength == 0:
         return Stylized(img, points, warp, img)
     factor = min(1.0, (_LARGEST / (img.shape[0] * img.shape[1])) ** 0.5)
     photo, placed = _reduced(img, factor), placed_in(points, factor)
-    subject = _subject(photo, placed, warp.scaled(factor), look)
+    subject = subject_for(photo, placed, warp.scaled(factor), look)
     backdrop = None if look.ink else surroundings(subject, look)
     drawing, texture = (
         _drawn(subject, variant, backdrop, strength, img.shape) for variant in (look, look.for_texture())
     )
     return Stylized(drawing, warp.points(points), warp, texture)
+
+
+def check_strength(strength: object) -> None:
+    """Refuse what is no strength.
+
+    Raises
+    ------
+    ValueError
+        If it is not a number in [0, 2].
+    """
+    if not (isinstance(strength, numbers.Real) and 0 <= float(strength) <= _STRONGEST):
+        raise ValueError(f"strength: expected a number in [0, {_STRONGEST:g}], got {strength!r}")
 
 
 def check_style(style: object) -> Style:
@@ -127,7 +137,7 @@ def check_style(style: object) -> Style:
     return STYLES[style]
 
 
-def _subject(photo: Bytes, points: Floats, warp: VelocityWarp, look: Style) -> Subject:
+def subject_for(photo: Bytes, points: Floats, warp: VelocityWarp, look: Style) -> Subject:
     """The warped photograph, and all that is measured on it."""
     fit = photometric_fit(photo, fit_3dmm(photo, points), points)
     sources = warp.sources((photo.shape[0], photo.shape[1]))

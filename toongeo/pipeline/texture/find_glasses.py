@@ -29,6 +29,7 @@ _BELOW = np.radians(np.linspace(15, 165, 61))  # where a rim is looked for, from
 _RADII = np.linspace(0.5, 1.15, 53)  # eye widths
 _OFF_LID = 0.18  # eye widths from the lower lid: nearer lie lashes and bags
 _MOST = 30  # percent of a rim's way that may be fainter than told
+_BROWS = np.r_[PARTS["brow_right"], PARTS["brow_left"]]
 _GROWN = 0.04  # eye widths by which what was found is grown: rims have soft edges
 
 
@@ -138,6 +139,8 @@ def _is_dark(view: EyeView, bridge: float) -> bool:
 def _lenses(view: EyeView) -> np.ndarray:
     """Mask of the view of both lenses and what joins them: pixels about the eyes that are not of the cheeks' skin."""
     cover = np.zeros(view.lab.shape[:2], bool)
+    right, left = (eye.mean(0) for eye in view.eyes)
+    reach, brows = 0.49 * float(np.linalg.norm(left - right)), view.points[_BROWS, 1].mean() + 4
     for eye in view.eyes:
         width, low = float(np.linalg.norm(eye[3] - eye[0])), eye[[4, 5], 1].mean()
         across = eye.mean(0)[0] + np.linspace(-0.4, 0.4, 17) * width
@@ -146,7 +149,7 @@ def _lenses(view: EyeView) -> np.ndarray:
         like_lens = np.linalg.norm(view.lab - cheek, axis=2) > 0.5 * np.linalg.norm(lens - cheek)
         rows, columns = np.indices(like_lens.shape)
         x, y = (columns - eye.mean(0)[0]) / width, (rows - eye.mean(0)[1]) / width
-        near = like_lens & (np.abs(x) < 1.1) & (y > -0.7) & (y < 0.8)
+        near = like_lens & (np.abs(x) < reach / width) & (rows > brows) & (y < 1.0)
         near |= view.inside(eye, 1.3)
         near = cv2.morphologyEx(near.astype(np.uint8), cv2.MORPH_OPEN, np.ones((5, 5), np.uint8))
         _, labels = cv2.connectedComponents(near)

@@ -10,6 +10,7 @@ from toongeo.protocols import FaceLabel, FaceParse
 
 __all__ = ["without_glasses"]
 
+_NO_SKIN = FaceLabel.HAIR, FaceLabel.HAT, FaceLabel.BROW_LEFT, FaceLabel.BROW_RIGHT, FaceLabel.BACKGROUND
 _WHITE, _IRIS, _PUPIL, _LASH = (238, 234, 228), (92, 64, 44), (18, 14, 12), 0.35  # sRGB; the last of the skin
 _RADIUS, _PUPIL_SHARE = 0.24, 0.45  # of the eye's width, and of the iris
 _FINE = 4  # subpixels a side
@@ -28,7 +29,7 @@ def without_glasses(
     glasses : Glasses
         From :func:`~toongeo.pipeline.texture.find_glasses.find_glasses`.
     parse : FaceParse, optional
-        What it calls hair, hat or background lends nothing.
+        What it calls hair, hat, brow or background lends nothing.
 
     Returns
     -------
@@ -42,7 +43,7 @@ def without_glasses(
     # Not the soft edge of the frame, which would veil what is filled.
     lends = cv2.dilate(cover.astype(np.uint8), np.ones((5, 5), np.uint8)) == 0
     if parse is not None:
-        lends &= ~parse.mask(FaceLabel.HAIR, FaceLabel.HAT, FaceLabel.BACKGROUND)
+        lends &= ~parse.mask(*_NO_SKIN)
     filled = _filled(img, cover, lends)
     if glasses.kind == "dark":
         for name, opening in zip(("eye_right", "eye_left"), eyes, strict=True):

@@ -8,10 +8,21 @@ import pytest
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.hair.colour_evidence import colour_evidence
 from toongeo.pipeline.parse.hair.hair_alpha import hair_alpha
-from toongeo.pipeline.parse.hair.hair_trust import HairMeasures, distrust, hair_measures
+from toongeo.pipeline.parse.hair.hair_trust import HairChances, HairCuts, HairMeasures, distrust, hair_measures
 from toongeo.pipeline.parse.hair.superpixels import superpixels
 
-GOOD = HairMeasures(area=0.4, agreement=0.95, inside=0.95, outside=0.05, topped=1.0, border=0.0, hat=0.0, outlined=1.0)
+GOOD = HairMeasures(
+    area=0.4,
+    agreement=0.95,
+    inside=0.95,
+    outside=0.05,
+    topped=1.0,
+    border=0.0,
+    hat=0.0,
+    outlined=1.0,
+    left=0.8,
+    hanging=10.0,
+)
 
 
 def test_evidence_is_antisymmetric_in_its_sides(rng):
@@ -63,16 +74,18 @@ def test_measures_of_a_crown_that_is_known(zones, cap):
     half = cap.copy()
     half[:45] = False
     lab = np.where(cap[..., None], np.float32([20, 0, 0]), np.float32([70, 10, 10]))
-    found = hair_measures(lab, cap, half, zones, posterior, posterior / 4)
+    found = hair_measures(lab, cap, HairCuts(cap, half, cap), zones, HairChances(posterior, posterior / 4))
     assert found.area == pytest.approx(cap.sum() / zones.head**2)
     assert found.agreement == pytest.approx(half.sum() / cap.sum())
     assert (found.inside, found.outside, found.hat) == pytest.approx((0.8, 0.1, 0.25), abs=1e-5)
-    assert found.certainty == pytest.approx(found.agreement + 0.7)
+    assert found.certainty == pytest.approx(found.agreement + 0.7 + 0.1)  # head less skin is just this
     assert found.topped == 1 and found.border == 0 and found.outlined == 1
+    assert found.left == 1 and found.hanging == 10
+    chances = HairChances(posterior, posterior)
     low = cap & (zones.up < 0.5)
-    assert hair_measures(lab, low, low, zones, posterior, posterior).topped > 0.9
+    assert hair_measures(lab, low, HairCuts(low, low, cap), zones, chances).topped > 0.9
     side = cap & (zones.across < 0)
-    halved = hair_measures(lab, side, side, zones, posterior, posterior)
+    halved = hair_measures(lab, side, HairCuts(side, side, cap), zones, chances)
     assert 0.4 < halved.topped < 0.6
     assert 0.5 < halved.outlined < 0.8  # no outline along the middle line
 
@@ -81,7 +94,7 @@ def test_measures_of_nothing(zones):
     nothing = np.zeros(zones.skull.shape, bool)
     field = np.full(nothing.shape, 0.2, np.float32)
     lab = np.zeros((*nothing.shape, 3), np.float32)
-    found = hair_measures(lab, nothing, nothing, zones, field, field)
+    found = hair_measures(lab, nothing, HairCuts(nothing, nothing, nothing), zones, HairChances(field, field))
     assert found.area == 0 and found.topped == 0 and distrust(found)
 
 
@@ -96,6 +109,7 @@ def test_good_measures_are_trusted_and_each_bad_one_is_named():
         "topped": (0.2, "top"),
         "border": (0.9, "border"),
         "hat": (0.8, "hat"),
+        "hanging": (0.2, "clothes"),
     }
     for name, (value, word) in bad.items():
         # Of a clear case, so that no other limit is reached.
@@ -103,6 +117,26 @@ def test_good_measures_are_trusted_and_each_bad_one_is_named():
         clear = clear if name != "outside" else GOOD
         (reason,) = distrust(dataclasses.replace(clear, **{name: value}))
         assert word in reason
+
+
+@pytest.mark.parametrize("colour", [(20, 0, 0), (60, -30, -20)])
+def test_a_collar_in_another_colour_than_the_hair_is_noticed(zones, cap, colour):
+    """What hangs beside the chin: a strand of the hair, or the upper end of a coat."""
+    hanging = (np.abs(zones.across + 0.6) < 0.15) & (zones.up < 0.3) & (zones.up > -1.1)
+    coat = (zones.up < -1) & (np.abs(zones.across) < 1)
+    lab = np.full((*cap.shape, 3), np.float32([90, 0, 0]))
+    lab[coat] = 60, -30, -20
+    lab[cap] = 20, 0, 0
+    lab[hanging] = colour
+    mask, field = cap | hanging, np.full(cap.shape, 0.5, np.float32)
+    found = hair_measures(lab, mask, HairCuts(mask, mask, mask), zones, HairChances(field, field))
+    assert (found.hanging > 0.5) == (colour == (20, 0, 0))
+
+
+def test_a_third_mask_makes_doubtful_cuts_certain():
+    doubtful = dataclasses.replace(GOOD, agreement=0.92, inside=0.7, outside=0.15)
+    assert distrust(doubtful)
+    assert distrust(dataclasses.replace(doubtful, left=1.0)) == ()
 
 
 @pytest.mark.parametrize("value", [np.nan])

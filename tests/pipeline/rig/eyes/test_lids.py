@@ -13,6 +13,7 @@ from toongeo.model.anatomy.rims import opening_rim, rim_path
 from toongeo.pipeline import align_face, build_rig, fit_3dmm, fit_lids
 from toongeo.pipeline.rig.eyes.lid_closure import lid_closure
 from toongeo.pipeline.rig.eyes.visible_eyeballs import visible_eyeballs
+from toongeo.pipeline.rig.skin import crossing_triangles
 from toongeo.pipeline.rig.skin.crossing_triangles import crossing_all, resolve_crossings
 
 BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
@@ -142,6 +143,22 @@ def test_ways_that_cross_are_made_alike(model):
     better = resolve_crossings(model, patch, model.mean, ways, 0)
     assert len(crossing_all(patch, model.mean + better)) == 0
     np.testing.assert_array_equal(resolve_crossings(model, patch, model.mean, better, 0), better)
+
+
+def test_crumpled_skin_is_given_up_at_once(model, monkeypatch):
+    """Where most of it crosses, five rounds of smoothing take long and mend nothing."""
+    patch = eye_patch(model, "left")
+    ways = np.zeros(model.mean.shape)
+    ways[patch.vertices] = np.random.default_rng(0).normal(0, 4, (len(patch.vertices), 3))
+    looked = []
+
+    def counted(*arguments):
+        looked.append(crossing_all(*arguments))
+        return looked[-1]
+
+    monkeypatch.setattr(crossing_triangles, "crossing_all", counted)
+    assert resolve_crossings(model, patch, model.mean, ways, 0) is ways
+    assert len(looked) == 1 and len(looked[0]) > crossing_triangles.HOPELESS * len(patch.faces)
 
 
 def test_both_eyes_are_reported_closed(stages):

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from toongeo.model.anatomy.lid_rings import lid_rings
-from toongeo.pipeline.texture.bake_texture import _atlas_fragments
-from toongeo.pipeline.texture.lids.lash_line import drawn_lashes, stroked
+from toongeo.pipeline.texture.bake_texture import _atlas_fragments, bake_texture
+from toongeo.pipeline.texture.lids.lash_line import drawn_lashes, spike_count, stroked
 from toongeo.pipeline.texture.lids.lid_membrane import lid_membrane, lid_ring
 from toongeo.pipeline.texture.lids.lid_zones import lid_zone, skin_edges
 from toongeo.pipeline.texture.lids.paint_lids import paint_lids
@@ -143,3 +143,37 @@ def test_streaks_over_an_eye_are_gone_when_it_closes(face, rig, cartoon):
     inner = (zone > 0.9) & ~(edges @ (edges @ (edges @ rims.astype(float))) > 0)
     assert inner.sum() > 20
     assert np.median(painted[inner].mean(1)) > 0.8 * SKIN.mean()
+
+
+def spiked(picture, face, side, count):
+    """The picture with strokes standing on an upper lid."""
+    out, edge = picture.copy(), face.project(face.vertices[lid_rings(face.model, side).upper[1]])
+    width = np.linalg.norm(edge[-1] - edge[0])
+    for foot in edge[np.linspace(3, len(edge) - 4, count).round().astype(int)]:
+        ends = np.rint([foot, foot - [0, 0.2 * width]]).astype(int).tolist()
+        cv2.line(out, *ends, (20, 20, 20), 1)
+    return out
+
+
+def test_spikes_of_lashes_are_counted(face, plain):
+    skin = np.tile(SKIN, (len(face.vertices), 1))
+    assert spike_count(plain, face, "left", skin) == 0
+    assert spike_count(spiked(plain, face, "left", 3), face, "left", skin) == 3
+    assert spike_count(spiked(plain, face, "left", 8), face, "left", skin) == 8
+    assert spike_count(spiked(plain, face, "left", 8), face, "right", skin) == 0
+
+
+def test_lashes_drawn_one_by_one_stay_above_the_eye(face, rig, cartoon, edges):
+    img, _ = cartoon("moustache_man")
+    texture = bake_texture(img, face, size=512)
+    painted = paint_lids(texture, _atlas_fragments(face.model, 512), img, face, rig)
+    without = paint_lids(texture, _atlas_fragments(face.model, 512), np.full_like(img, 200), face, rig)
+    kept = []
+    for side in ("left", "right"):
+        zone, strip = (lid_zone(face.model, rig, side, edges, limits) for limits in ((1.3, 2.2), (2.2, 3.5)))
+        above = (zone > 0.3) & (strip < 0.3) & ~np.isin(np.arange(len(zone)), lid_rings(face.model, side).vertices)
+        dark = [(vertex_colours(face.model, image).mean(1) < 120)[above].sum() for image in (texture, painted, without)]
+        assert dark[0] > 10
+        kept.append([dark[1] / dark[0], dark[2] / dark[0]])
+    kept = np.mean(kept, axis=0)
+    assert kept[0] > 0.7 and kept[1] < kept[0] - 0.2

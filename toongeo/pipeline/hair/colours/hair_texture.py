@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from toongeo.arrays import Integers, Reals
 from toongeo.geometry import vertex_normals
+from toongeo.pipeline.hair.colours.other_side import other_side
 from toongeo.pipeline.hair.colours.panels import Texels, panels, texels
 from toongeo.pipeline.hair.colours.picture_colours import PictureColours
 from toongeo.pipeline.hair.colours.strand_frame import StrandFrame
@@ -63,6 +64,12 @@ def _colours(
     """Colours (k, 3) of texels."""
     at = (inside.points[:, :2] - plane.low) / colours.cell_mm
     broad, plain = (sample_image(layer, at) for layer in (colours.broad, colours.plain))
+    mirrored, hidden = other_side(plane, inside.points)
+    if hidden.any():
+        other = (mirrored[:, :2] - plane.low) / colours.cell_mm
+        weight = hidden[:, None].astype(np.float32)
+        broad += weight * (sample_image(colours.broad, other) - broad)
+        plain += weight * (sample_image(colours.plain, other) - plain)
     across, along = frame.at(plane.back(inside.points))
     per_mm = strands.shape[1] / frame.breadth
     rows = np.abs(np.mod(along * per_mm + len(strands), 2 * len(strands)) - len(strands))  # there and back again

@@ -9,13 +9,16 @@ from numpy.typing import NDArray
 from toongeo.arrays import Mask, Reals
 from toongeo.pipeline.hair.plane.masks import nearest_set
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
-from toongeo.pipeline.parse.colour_share import colour_codes, colour_share
+from toongeo.pipeline.parse.colour_share import ColourCodes, colour_codes, colour_share
 
 __all__ = ["PictureColours", "picture_colours"]
 
 
 _EDGE_MM = 0.8  # along the hair's edge the picture is mixed with what is beside it
 _RARE = 0.0015  # of the hair: colours that are rarer are of something else
+_MIXED_MM = 12.0  # so far inside its edge curly hair lets the ground through
+_CLEAR_MM, _BESIDE_MM = 2.0, 15.0  # from and to where outside the hair its surroundings are looked at
+_OTHERS = 4.0  # so much commoner beside the hair than inside it a colour is not the hair's
 _OUTLINES_MM = np.arange(1.0, 7.0, 0.5)  # breadths of drawn outlines that are looked for
 _DARKER = 0.6  # of the hair's lightness: a drawn outline is below
 _STROKE_MM = 4.0  # half the window of a median that removes strokes
@@ -71,7 +74,9 @@ def picture_colours(
     known = (deep > _EDGE_MM) & pictured & ~((edge < line + 2.0) & (deep < line))
     core = known & (deep > 3.0)
     core = core if core.sum() > 0.3 * known.sum() else known
-    known &= colour_share(colour_codes(picture), core) > _RARE
+    codes = colour_codes(picture)
+    known &= colour_share(codes, core) > _RARE
+    known &= ~_strange(codes, core, deep, pictured)
     if not known.any():
         known = (deep > 0) & pictured
     if not known.any():
@@ -86,6 +91,15 @@ def picture_colours(
     ground = np.asarray(cv2.medianBlur(drawn, window), np.uint8)
     broad, plain = (_pushed(ground, pure, sigma * density) for sigma in (_BROAD_MM, _PLAIN_MM))
     return PictureColours(drawn.astype(np.float32), broad, plain, known, deep, cell)
+
+
+def _strange(codes: ColourCodes, core: Mask, deep: Reals, pictured: Mask) -> Mask:
+    """Near the edge what has the colours of what is beside the hair and not of its inside: ground between curls."""
+    inner = core & (deep > _MIXED_MM)
+    beside = pictured & (deep < -_CLEAR_MM) & (deep > -_BESIDE_MM)
+    if not inner.any() or not beside.any():
+        return np.zeros_like(core)
+    return np.asarray((deep < _MIXED_MM) & (colour_share(codes, beside) > _OTHERS * colour_share(codes, inner)))
 
 
 def _resampled(layer: Reals, shape: tuple[int, int], cell: float) -> NDArray[np.float32]:

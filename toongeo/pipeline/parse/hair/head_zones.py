@@ -57,6 +57,11 @@ class HeadZones:
     head: float
     unit: float
 
+    @property
+    def high(self) -> Mask:
+        """So far above the brows that a head is scalp."""
+        return np.asarray(self.up > _CROWN)
+
 
 def head_zones(view: WorkingView, landmarks: Floats, fit: FittedFace) -> HeadZones:
     """Zones of the landmarks (68, 2), px of the picture, none missing, and of a fitted face."""

@@ -3,28 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import cv2
 import numpy as np
 
 from toongeo.arrays import Singles
 from toongeo.colour.cielab import cielab
-from toongeo.pipeline.parse.hair.cuts import colour_cut, grab_cut
+from toongeo.pipeline.parse.hair.cut_evidence import cut_evidence
+from toongeo.pipeline.parse.hair.cuts import colour_cut, edge_cut, grab_cut
 from toongeo.pipeline.parse.hair.growth_rules import growth_rules
 from toongeo.pipeline.parse.hair.hair_alpha import hair_alpha
 from toongeo.pipeline.parse.hair.hair_model import HairModel
-from toongeo.pipeline.parse.hair.hair_trust import HairMeasures, hair_measures
+from toongeo.pipeline.parse.hair.hair_trust import HairChances, HairCuts, HairMeasures, hair_measures, overlap
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
+from toongeo.pipeline.parse.hair.narrowed_zones import narrowed_zones
 from toongeo.pipeline.parse.hair.plain_ground import plain_ground
 from toongeo.pipeline.parse.hair.superpixels import superpixels
+from toongeo.pipeline.parse.head_and_skin import HeadAndSkin
 from toongeo.pipeline.parse.masks import Mask
 from toongeo.pipeline.parse.working_view import WorkingView
 
-__all__ = ["SegmentedHair", "segment_hair"]
+__all__ = ["SegmentedHair", "alike", "segment_hair"]
 
 
 _BLUR = 1.8  # px: superpixels have jagged borders
-_ALIKE = 0.88  # overlap of the two cuts above which GrabCut's is taken: its outlines are closer, but it strays more
+_ALIKE = 0.88  # overlap of two cuts below which a third is asked; on CHOOSING of benchmarks/pictures.py 5 of 13 are
 _HAT = 0.02  # squares of the head's size: smaller hats are none
 _HAT_SHARE = 0.3  # of hair and hat: a smaller hat is hair of another colour
 
@@ -39,24 +43,33 @@ class SegmentedHair:
     measures: HairMeasures
 
 
-def segment_hair(view: WorkingView, zones: HeadZones, model: HairModel) -> SegmentedHair:
-    """Posterior, two cuts of it, rules of growth, and what the cuts say of each other."""
+def segment_hair(view: WorkingView, zones: HeadZones, cut: HeadAndSkin, model: HairModel) -> SegmentedHair:
+    """Posterior, three cuts of it, rules of growth, and what the cuts say of each other."""
     lab = cielab(view.pixels)
+    ground = plain_ground(view, zones)
+    zones = narrowed_zones(zones, cut.head)
     patches = superpixels(lab)
     guess, chances = (p[patches.labels] for p in model(zones, patches))
-    cover = _cover(chances)
-    ground = plain_ground(view, zones)
-    both, other = (
-        growth_rules(cut, zones, cover)
-        for cut in (colour_cut(lab, zones, cover, ground), grab_cut(view, zones, cover, ground))
+    cover = cut_evidence(zones, cut, _cover(chances))
+    one, other = (
+        growth_rules(part, zones, cover)
+        for part in (colour_cut(lab, zones, cover, ground), grab_cut(view, zones, cover, ground))
     )
-    if (both & other).sum() > _ALIKE * (both | other).sum():
-        both, other = other, both
+    if overlap(one, other) < _ALIKE:
+        one, other = alike([one, other, growth_rules(edge_cut(lab, cover), zones, cover)])
+    both = one | other  # each misses what the other has, more often than it strays
     hat = _hat(both, chances, zones)
     alpha = hair_alpha(view.pixels, both & ~hat, zones.head)
     mean = (guess + chances) / np.float32(2)
-    measures = hair_measures(lab, both, other, zones, _cover(mean), mean[..., 2])
+    measures = hair_measures(
+        lab, both, HairCuts(one, other, cut.head & ~cut.skin), zones, HairChances(_cover(mean), mean[..., 2])
+    )
     return SegmentedHair(both & ~hat, hat, alpha, measures)
+
+
+def alike(masks: list[Mask]) -> tuple[Mask, Mask]:
+    """Those two masks that overlap most: a third that went astray is outvoted."""
+    return max(combinations(masks, 2), key=lambda pair: overlap(*pair))
 
 
 def _cover(chances: Singles) -> Singles:

@@ -1,6 +1,7 @@
 """Eyeballs, and lids that keep contact with them."""
 
 import dataclasses
+from typing import Any
 
 from toongeo.model.anatomy.lid_rings import lid_rings, lids_of
 from toongeo.model.anatomy.parts import SIDES
@@ -55,7 +56,7 @@ def fit_lids(face: AlignedFace, rig: Rig, *, close: bool = True) -> tuple[Rig, E
     rig = separate_lids(face, follow_gaze(face, rig, eyes), eyes)
     rig = unfold_lids(face, keep_lids_outside(face, rig, eyes), eyes)
     rig = rebuild_sockets(face, rig, eyes)
-    closures = {}
+    closures: dict[str, Any] = {}
     for name, shape in zip(SIDES, blinks, strict=True):
         blink = rig.neutral + rig.deltas[rig.names.index(shape)]
         closures[f"closure_{name}"] = lid_closure(lid_rings(face.model, name), rig.neutral, blink)

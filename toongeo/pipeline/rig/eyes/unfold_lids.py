@@ -15,6 +15,7 @@ from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.eyes.keep_lids_outside import CLEARANCE, outwards
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.rig.skin.crossing_triangles import (
+    HOPELESS,
     Sheet,
     around,
     crossing_all,
@@ -74,6 +75,10 @@ def unfold_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
                 if k == blink:
                     way = resolve_crossings(face.model, patch, rig.neutral, shapes[k], _ALLOWED)
                     shapes[k] = _outside(rig.neutral, way, patch.vertices, eyes.centres[side], eyes.radii[side])
+                    continue
+                if len(hit) > HOPELESS * len(patch.faces):
+                    shapes[k] *= 1 - fading[:, None]  # as the last time would, without the times between
+                    del looked_at[k]
                     continue
                 weight = around(face.model, patch.vertices[patch.faces[hit]], _SPREADING) if local else fading
                 shapes[k] *= 1 - damping * weight[:, None]

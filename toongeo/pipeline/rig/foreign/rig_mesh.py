@@ -18,10 +18,13 @@ from toongeo.model.anatomy.hidden_vertices import hidden_vertices
 from toongeo.model.anatomy.straighten_teeth import PARTS
 from toongeo.model.ibug68 import INNER, MIRROR
 from toongeo.pipeline.align.align_face import AlignedFace
+from toongeo.pipeline.rig.foreign.back_to_dense import back_to_dense
 from toongeo.pipeline.rig.foreign.check_winding import check_winding
 from toongeo.pipeline.rig.foreign.close_gaps import close_gaps
 from toongeo.pipeline.rig.foreign.loose_parts import MouthParts, settle_loose_parts
+from toongeo.pipeline.rig.foreign.mouth_opens import mouth_opens
 from toongeo.pipeline.rig.foreign.register_face import register_face
+from toongeo.pipeline.rig.foreign.thinned_mesh import thinned_mesh
 from toongeo.pipeline.rig.rig import Rig, RigReport
 from toongeo.pipeline.rig.split_gaze import split_gaze
 
@@ -31,6 +34,8 @@ _LEAST_LANDMARKS = 12  # of the inner ones
 _LIKENESS = 0.5  # of their spread: how far landmarks of a face may be from the model's, root mean square
 _EXCHANGED = 0.5  # of the misfit: what is left of it with the sides exchanged, if they were
 _STILL = 1e-3  # of the largest motion: what moves less in every expression is held
+_MOST_VERTICES = 60_000  # three times the template's; a denser head is thinned for the work, which takes minutes else
+_TORN = 0.1  # of the vertices: more copies are no seams of a texture, but loose triangles
 _LEAST_MATCHED = 0.5  # of the face: with less the two are not the same kind of surface
 
 
@@ -40,7 +45,7 @@ def rig_mesh(
     landmarks: ArrayLike,
     *,
     model: MorphableModel | None = None,
-    weld: bool = False,
+    weld: bool | None = None,
 ) -> Rig:
     """Give a neutral head of any topology the named expressions of a model.
 
@@ -61,9 +66,10 @@ def rig_mesh(
         needed; of the others at least twelve are.
     model : MorphableModel, optional
         :func:`toongeo.default_model` unless given.
-    weld : bool
+    weld : bool, optional
         Take vertices at borders that share a place for one: for meshes of files that repeat vertices at the seams of
         their textures (GLB, PLY) or at every triangle (STL). They stay as they are in the result, and move alike.
+        None: if the mesh is torn, so that one in ten of its vertices or more is such a copy.
 
     Returns
     -------
@@ -71,7 +77,9 @@ def rig_mesh(
         ``names``, ``neutral`` (`V`) and ``deltas`` (k, n, 3) in the frame and unit of `V`; nothing follows the gaze
         unless the model has shapes of its names.
         ``report`` holds ``seconds``, ``matched`` (share of the model's face that found a partner), ``distance`` (its
-        mean distance, in units of `V`) and ``partnered`` (share of the head's vertices).
+        mean distance, in units of `V`), ``partnered`` (share of the head's vertices) and ``mouth_opens`` (False if the
+        lips are one surface, which expressions only stretch). Heads of more than 60,000 vertices are thinned for the
+        work; the vertices between move along.
 
     Raises
     ------
@@ -103,12 +111,14 @@ def rig_mesh(
     points = _checked_points(neutral, faces, landmarks, model)
     middle = np.nanmean(points, axis=0)  # far from the origin, as on a map, digits are few
     vertices, points = neutral - middle, points - middle
-    twin = border_twins(vertices, faces) if weld else np.arange(len(vertices))
+    twin = _twins(vertices, faces, weld)
     faces = twin[faces]
-    check_winding(vertices, faces, points, model)
-    used = np.unique(faces)
+    whole = np.unique(faces)
     # Vertices in no triangle have no surface around them, and stay.
-    local = np.searchsorted(used, faces)
+    all_local = np.searchsorted(whole, faces)
+    kept, local = thinned_mesh(vertices[whole], all_local, _MOST_VERTICES)
+    used = whole[kept]
+    check_winding(vertices[used], local, points, model)
     head = register_face(vertices[used], local, points, model)
     skin = ~hidden_vertices(model)
     face = model.region("face") & skin
@@ -122,11 +132,16 @@ def rig_mesh(
     carrier = head.registration.vertices.copy()
     carrier[~skin] = head.to_foreign(head.face.vertices[~skin]) + head.shift
     carried, partnered = carry_shapes(carrier, model.faces, skin, shapes, vertices[used], local)
+    mouth = _mouth_parts(model, carrier, shapes)
+    settled = settle_loose_parts(vertices[used], local, points, carried, partnered, mouth).astype(np.float32)
+    del carried
+    if len(kept) < len(whole):
+        settled = back_to_dense(vertices[whole], all_local, kept, local, settled)
+    place = np.full(len(vertices), -1)
+    place[whole] = np.arange(len(whole))
     deltas = np.zeros((len(shapes), len(vertices), 3), np.float32)
-    deltas[:, used] = settle_loose_parts(
-        vertices[used], local, points, carried, partnered, _mouth_parts(model, carrier, shapes)
-    )
-    deltas = deltas[:, twin] if weld else deltas
+    moving = place[twin] >= 0
+    deltas[:, moving] = settled[:, place[twin][moving]]
     names, deltas, gaze = split_gaze(model.expression_names[: model.n_named], deltas)
     return Rig(
         names=names,
@@ -139,8 +154,18 @@ def rig_mesh(
             matched=matched,
             distance=float(head.registration.distances[face & head.registration.matched].mean()),
             partnered=float(partnered.mean()),
+            mouth_opens=mouth_opens(vertices[used], local, points),
         ),
     )
+
+
+def _twins(V: np.ndarray, F: np.ndarray, weld: bool | None) -> np.ndarray:
+    """For each vertex the one that it is taken for."""
+    own = np.arange(len(V))
+    if weld is False:
+        return own
+    twin = border_twins(V, F)
+    return twin if weld or (twin != own).mean() > _TORN else own
 
 
 def _checked_points(V: np.ndarray, F: np.ndarray, landmarks: ArrayLike, model: MorphableModel) -> np.ndarray:

@@ -11,10 +11,11 @@ from toongeo.geometry import self_intersections
 from toongeo.model import MorphableModel
 from toongeo.pipeline.rig.skin.neighbour_means import neighbour_means
 
-__all__ = ["Sheet", "SkinPatch", "around", "crossing_all", "crossing_triangles", "resolve_crossings"]
+__all__ = ["HOPELESS", "Sheet", "SkinPatch", "around", "crossing_all", "crossing_triangles", "resolve_crossings"]
 
 _ROUNDS = 5  # of looking for crossings and smoothing
 _WIDTH = 4  # edges around them within which ways are smoothed
+HOPELESS = 0.25  # of the triangles: where more cross, skin is crumpled beyond what any of this can mend
 _PASSES = 3  # of smoothing a round
 
 
@@ -68,6 +69,8 @@ def resolve_crossings(
     best, least, known = ways, np.inf, None
     for _ in range(_ROUNDS):
         hit = crossing_all(patch, start + ways)
+        if len(hit) > HOPELESS * len(patch.faces):
+            break
         if len(hit) > allowed:
             known = crossing_all(patch, start) if known is None else known
             hit = np.setdiff1d(hit, known)

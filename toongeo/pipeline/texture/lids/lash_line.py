@@ -15,9 +15,10 @@ from toongeo.model.anatomy.lid_rings import lid_rings
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.render import sample_image, uv_to_px
 
-__all__ = ["LashLine", "drawn_lashes", "stroked"]
+__all__ = ["LashLine", "drawn_lashes", "spike_count", "stroked"]
 
 _FROM, _TO, _SAMPLES = -0.04, 0.09, 14  # where the line is looked for, in widths of the eye outwards of the edge
+_SPIKES = 0.1  # widths of the eye off its edge where spikes are counted
 _BLUR = 0.01  # widths of the eye
 _SMOOTH = 7  # columns of which each takes the median
 _FAINT, _CLEAR = 6.0, 20.0  # lightness below the skin's: from the first a line is drawn, from the second surely
@@ -59,13 +60,7 @@ def drawn_lashes(img: np.ndarray, face: AlignedFace, side: str, skin: np.ndarray
     """
     rings = lid_rings(face.model, side)
     columns = rings.upper.shape[1]
-    edge = face.project(face.vertices[rings.upper[1]])
-    width = float(np.linalg.norm(edge[-1] - edge[0]))
-    along = np.gradient(edge, axis=0)
-    across = np.column_stack([-along[:, 1], along[:, 0]])
-    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-9)
-    middle = face.project(face.vertices[rings.lower[1]]).mean(0)
-    across *= np.sign(((edge - middle) * across).sum(1, keepdims=True))
+    edge, across, width = _edge(face, side)
     steps = np.linspace(_FROM, _TO, _SAMPLES) * width
     places = edge + steps[:, None, None] * across
     blurred, shift = _around(img, places.reshape(-1, 2), max(0.6, _BLUR * width))
@@ -83,6 +78,17 @@ def drawn_lashes(img: np.ndarray, face: AlignedFace, side: str, skin: np.ndarray
     dark = (lightness < _lightness(own) - 0.5 * depth) & (drawn > 0.3)
     thick = dark.sum(0)[dark.any(0)] * (_TO - _FROM) / _SAMPLES
     return LashLine(colours, cover, float(np.clip(np.median(thick) if len(thick) else 0, *_WIDTHS)))
+
+
+def spike_count(img: np.ndarray, face: AlignedFace, side: str, skin: np.ndarray) -> int:
+    """How many dark strokes stand along an upper lid of a picture, apart from each other; arguments as above."""
+    edge, across, width = _edge(face, side)
+    at, fine = np.arange(len(edge)), np.linspace(0, len(edge) - 1, _FINE * _FINE * len(edge))
+    own = float(np.median(_lightness(skin[lid_rings(face.model, side).upper[2]])))
+    row = np.column_stack([np.interp(fine, at, axis) for axis in (edge + _SPIKES * width * across).T])
+    blurred, shift = _around(img, row, 0.6)
+    dark = _lightness(sample_image(blurred, row - shift)) < own - _CLEAR
+    return int((dark[1:] & ~dark[:-1]).sum())
 
 
 def stroked(texture: np.ndarray, model: MorphableModel, V: np.ndarray, side: str, line: LashLine) -> np.ndarray:
@@ -112,6 +118,18 @@ def stroked(texture: np.ndarray, model: MorphableModel, V: np.ndarray, side: str
     box *= 1 - small[..., 3:]
     box += small[..., :3]
     return painted
+
+
+def _edge(face: AlignedFace, side: str) -> tuple[np.ndarray, np.ndarray, float]:
+    """The edge (k, 2) px of an upper lid in the picture, unit vectors out of the eye, and the eye's width."""
+    rings = lid_rings(face.model, side)
+    edge = face.project(face.vertices[rings.upper[1]])
+    along = np.gradient(edge, axis=0)
+    across = np.column_stack([-along[:, 1], along[:, 0]])
+    across /= np.maximum(np.linalg.norm(across, axis=1, keepdims=True), 1e-9)
+    middle = face.project(face.vertices[rings.lower[1]]).mean(0)
+    across *= np.sign(((edge - middle) * across).sum(1, keepdims=True))
+    return edge, across, float(np.linalg.norm(edge[-1] - edge[0]))
 
 
 def _around(img: np.ndarray, px: np.ndarray, sigma: float) -> tuple[np.ndarray, np.ndarray]:

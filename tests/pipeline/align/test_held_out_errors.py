@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from toongeo.avatar.held_out_errors import held_out_errors
 from toongeo.avatar.make_avatar import make_avatar
-from toongeo.pipeline import fit_3dmm
+from toongeo.pipeline import fit_3dmm, held_out_errors
 from toongeo.render import ScaledOrthographicCamera
 
 

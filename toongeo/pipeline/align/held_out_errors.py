@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from toongeo.avatar.report import outer_eye_distance
 from toongeo.metrics import landmark_error
+from toongeo.metrics.outer_eye_distance import outer_eye_distance
 from toongeo.model import MorphableModel
 from toongeo.model.ibug68 import INNER
-from toongeo.pipeline import align_face, fit_3dmm
+from toongeo.pipeline.align.align_face import align_face
+from toongeo.pipeline.fit import fit_3dmm
 
 __all__ = ["held_out_errors"]
 

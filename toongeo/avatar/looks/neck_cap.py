@@ -1,0 +1,58 @@
+"""What closes a neck at its lower end."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from toongeo.arrays import Integers
+from toongeo.model import MorphableModel, atlas_coordinates
+from toongeo.pipeline import Rig
+from toongeo.render import Surface, sample_image, uv_to_px
+
+__all__ = ["neck_cap"]
+
+
+def neck_cap(model: MorphableModel, rig: Rig, texture: np.ndarray) -> Surface | None:
+    """A fan of triangles over the hole at the lower end of the neck, in the mean colour of its rim.
+
+    Its first vertices are those of the rim, which no expression moves; the last one is their mean.
+
+    Returns
+    -------
+    Surface or None
+        None of a model without a region ``neck`` in which there is such a hole.
+    """
+    rim = _rim(model)
+    if rim is None:
+        return None
+    atlas = atlas_coordinates(model)
+    points = rig.neutral[rim]
+    on_rim = np.isin(model.faces, rim)
+    uv = atlas.uv[np.unique(atlas.uv_faces[on_rim])]
+    colour = np.asarray(sample_image(texture, uv_to_px(uv, *texture.shape[:2]))).mean(axis=0) / 255
+    following = np.roll(np.arange(len(rim)), -1)
+    faces = np.column_stack([following, np.arange(len(rim)), np.full(len(rim), len(rim))])
+    return Surface(
+        np.vstack([points, points.mean(axis=0)]), faces.astype(np.int64), colours=np.tile(colour, (len(rim) + 1, 1))
+    )
+
+
+@lru_cache(maxsize=4)
+def _rim(model: MorphableModel) -> Integers | None:
+    """Vertices around the hole, in the order of the triangles beside it; None if there is none."""
+    if not model.has("neck"):
+        return None
+    directed = np.vstack([model.faces[:, [0, 1]], model.faces[:, [1, 2]], model.faces[:, [2, 0]]])
+    inside = model.region("neck")[directed].all(axis=1)
+    ways = {(int(a), int(b)) for a, b in directed[inside]}
+    after = {a: b for a, b in ways if (b, a) not in ways}
+    if not after:
+        return None
+    loop = [min(after)]
+    while (following := after.get(loop[-1])) is not None and following != loop[0]:
+        loop.append(following)
+        if len(loop) > len(after):
+            return None
+    return np.array(loop) if len(loop) == len(after) else None
