@@ -33,8 +33,10 @@ _DARKEST = 0.05  # contrasts, of skin
 _HEIGHTS = np.linspace(0, 1, 26)  # weights of the blink that are compared
 _SOFT = 0.06  # of the opening, over which the lid's edge is blurred
 _OUTLIER = 1.5  # contrasts; a larger error counts no more
+_PLAIN = 0.85  # of the error of an open eye: a blink that leaves more of it is not plain
+_RIVALS = "eyeWide", "eyeSquint"
 _CALM = 0.03  # contrasts that a closed eye must look better than an open one
-_FAINT = 0.6  # contrasts between eye and lid: of seven faces open eyes have 0.87 and more, closed ones 0.2 to 0.88
+_FAINT = 0.52  # contrasts between eye and lid: of seven faces open eyes have 0.87 and more, closed ones 0.2 to 0.88
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,16 +47,19 @@ class EyeAperture:
     ----------
     blink : int
         Which expression of the rig closes it.
+    rivals : tuple of int
+        Other expressions of the same eye, which cannot be told from a part of a blink.
     rest : (t, u, 3) float64, mm
         Places down from the skin of the upper lid to below the lower one, and along the lids.
     deltas : (t, u, 3, k) float64, mm
-        What each expression adds, but for the blink itself.
+        What each expression adds, but for the blink itself and its rivals.
     closing : (u,) float64
         The share of the opening that the blink at weight 1 closes.
     greys : (t, u) float64
     """
 
     blink: int
+    rivals: tuple[int, ...]
     rest: Floats
     deltas: Floats
     closing: Floats
@@ -69,14 +74,17 @@ class EyeAperture:
         lid = np.median(self.greys[_DOWN < 0], axis=0)
         return bool(np.abs(self.greys[_OPEN] - lid).mean() >= _FAINT)
 
-    def closed(self, level: Grey, pose: LandmarkPose) -> float:
-        """The weight in [0, 1] of the blink under which the eye looks most like this in a frame.
+    def closed(self, level: Grey, pose: LandmarkPose) -> float | None:
+        """The weight in [0, 1] of the blink under which the eye looks most like this in a frame; None if it looks
+        neither open nor closed.
 
         `level` are blurred grey values, the first of its channels; `pose` that of the face.
         """
         seen = _values(level, self.rest + self.deltas @ pose.weights, pose)
         error = np.minimum(np.abs(seen[_OPEN] - self._looks(seen)), _OUTLIER).mean(axis=(1, 2)) + _CALM * _HEIGHTS
         best = int(error.argmin())
+        if best and error[best] > _PLAIN * error[0]:
+            return None
         if not 0 < best < len(error) - 1:
             return float(_HEIGHTS[best])
         before, here, after = error[best - 1 : best + 2]
@@ -113,9 +121,10 @@ def eye_apertures(rig: LandmarkRig, level: Grey, pose: LandmarkPose) -> tuple[Ey
         height = np.maximum(upper[:, 1] - lower[:, 1], 1e-6)
         closing = np.clip((moved[1] - moved[0])[:, 1, blink] / height, 0, 1.3)
         deltas = _between(*moved)
-        deltas[..., blink] = 0
+        rivals = tuple(rig.names.index(f"{kind}{name[8:]}") for kind in _RIVALS if f"{kind}{name[8:]}" in rig.names)
+        deltas[..., [blink, *rivals]] = 0
         rest = _between(upper, lower)
-        eye = EyeAperture(blink, rest, deltas, closing, _values(level, rest, pose))
+        eye = EyeAperture(blink, rivals, rest, deltas, closing, _values(level, rest, pose))
         if eye.is_told:
             found.append(eye)
     return tuple(found)

@@ -84,10 +84,9 @@ class SkinReader:
         with one_thread():
             levels = slopes(grey)
             start = min(self._starts(small), key=lambda pose: picture_error(self.skin, levels, pose))
-            start = self._blinked(levels[-1], start)
-            held = [eye.blink for eye in self._eyes]
+            start, held = self._blinked(levels[-1], start)
             pose = picture_pose(self.skin, levels, start, least=least, steps=steps, held=held)
-            self._pose = self._blinked(levels[-1], pose)
+            self._pose = self._blinked(levels[-1], pose)[0]
         self._landmarks = small
         return self._pose
 
@@ -112,9 +111,13 @@ class SkinReader:
             found,
         ]
 
-    def _blinked(self, level: Grey, pose: LandmarkPose) -> LandmarkPose:
-        """The pose with the eyes as far closed as they look."""
-        weights = pose.weights.copy()
+    def _blinked(self, level: Grey, pose: LandmarkPose) -> tuple[LandmarkPose, list[int]]:
+        """The pose with the eyes as far closed as they plainly look, and the weights that are known by that."""
+        weights, known = pose.weights.copy(), []
         for eye in self._eyes:
-            weights[eye.blink] = eye.closed(level, pose)
-        return replace(pose, weights=weights)
+            closed = eye.closed(level, pose)
+            if closed is not None:
+                known += [eye.blink, *(eye.rivals if closed > 0 else ())]
+                weights[list(eye.rivals) if closed > 0 else []] = 0
+                weights[eye.blink] = closed
+        return replace(pose, weights=weights), known

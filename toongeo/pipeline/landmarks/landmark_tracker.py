@@ -14,9 +14,9 @@ from toongeo.protocols import LandmarkDetection, LandmarkDetector
 
 __all__ = ["LandmarkTracker"]
 
-# Chances of a face, of which those of seen and of covered faces lie far to either side (0.99 and 0.01 on renders): one
-# that is followed may look odd for a frame, one that was lost must be sure.
-_STILL_THERE, _BACK = 0.5, 0.9
+# Chances of a face: on films of drawn avatars those of seen faces are 0.3 and more, of covered ones 0.01 at most. One
+# that is followed may look odd for a frame, one that was lost must be surer.
+_STILL_THERE, _BACK = 0.2, 0.7
 _LOOK_EVERY = 0.2  # s between searches of the whole picture: a search takes some 0.25 s, and 0.5 s is how long a face
 # that is back may go unseen
 
