@@ -32,6 +32,7 @@ CHOSEN_ON = {
     # That a face beside a sure one must be as sure; the rest saw renders only, whose jaws and noses follow annotators'
     # conventions that were read off the points of all pictures once.
     "detection": ("astronaut",),
+    "drift": (),
     "driving": EXAMPLES,
     "editing": EXAMPLES,
     "editor": EXAMPLES,  # the one constant of the placing
@@ -53,6 +54,7 @@ CHOSEN_ON = {
     "rig": EXAMPLES,
     "snapping": (*EXAMPLES, *CARICATURES),  # the lids' features and candidates; their weights saw renders only
     "stages": EXAMPLES,
+    "stylize": ("astronaut", "einstein", "image_0010", "takeo"),
     "table1": (*EXAMPLES, *CARICATURES),
     "table2": (*EXAMPLES, *CARICATURES),
     "tracking": ("astronaut", "bad_guy", "blue_girl", "manga_girl", "moustache_man"),  # films, mostly of other acting

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from pictures import FOLDER
+from pictures import FOLDER, roles
 from scipy.interpolate import RBFInterpolator
 
 import toongeo as tg
@@ -165,6 +165,7 @@ def seconds() -> None:
         started = time.process_time()
         run()
         print(f"{name:18s} {time.process_time() - started:5.2f} s")
+    print(roles("stylize", ["astronaut"]))
 
 
 if __name__ == "__main__":

@@ -95,7 +95,7 @@ def test_make_writes_a_vrm_with_its_author_and_a_small_glb(tmp_path, capsys):
     assert main(glb) == 0
     document = read_glb(tmp_path / "a.glb").json
     assert len(document["meshes"][0]["extras"]["targetNames"]) == 52 and "images" not in document
-    assert document["extensionsUsed"] == ["KHR_mesh_quantization"]
+    assert document["extensionsUsed"] == ["KHR_mesh_quantization", "KHR_materials_specular"]
 
 
 def test_make_takes_a_hair_mask_or_no_hair(tmp_path, capsys, monkeypatch):

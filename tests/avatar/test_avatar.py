@@ -110,7 +110,7 @@ def test_a_second_run_is_bit_identical(avatar, glb, cartoon, tmp_path):
 
 def test_the_glb_holds_46_named_targets_and_eyes_that_follow_gaze(glb):
     document = read_glb(glb).json
-    names = {mesh["name"]: mesh["extras"]["targetNames"] for mesh in document["meshes"]}
+    names = {mesh["name"]: mesh["extras"]["targetNames"] for mesh in document["meshes"] if "extras" in mesh}
     assert len(names["head"]) == 46 + 8 and {"eyeBlinkLeft", "eyeLookUpLeft"} < set(names["head"])
     assert names["eye_left"] == ["eyeLookInLeft", "eyeLookOutLeft", "eyeLookUpLeft", "eyeLookDownLeft"]
     assert len(document["images"]) == 1
@@ -226,7 +226,8 @@ def test_render_is_a_picture_of_the_size_asked_for(avatar):
 def test_stages_are_announced_and_timed(avatar, cartoon):
     heard = []
     result = make_avatar(*cartoon("blue_girl"), texture_size=64, progress=heard.append)
-    assert tuple(heard) == STAGES == tuple(result.report.seconds)
+    asked = tuple(stage for stage in STAGES if stage != "style")
+    assert tuple(heard) == asked == tuple(result.report.seconds)
 
 
 def test_a_picture_that_is_none_is_refused(cartoon):

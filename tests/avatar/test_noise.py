@@ -53,7 +53,7 @@ def detected(wrong):
     img, points = wrong
     with pytest.MonkeyPatch.context() as patch:
         found = LandmarkDetection(points, np.full(68, 0.9), 0.9)
-        patch.setattr(sys.modules["toongeo.avatar.make_avatar"], "detect_landmarks", lambda img: found)
+        patch.setattr(sys.modules["toongeo.avatar.make_avatar"], "detect_landmarks", lambda img, detector=None: found)
         return make_avatar(img, hair=False, texture_size=64)
 
 

@@ -137,7 +137,7 @@ def test_bad_folders_are_one_line_and_exit_code_2(command, folder, tmp_path, cap
     for where, message in ((tmp_path / "empty", "expected pictures"), (folder, "got none for moustache_man.png")):
         assert main(["bench", command, str(where), "-o", str(tmp_path / "out")]) == 2
         error = capsys.readouterr().err.splitlines()
-        assert len(error) == 1 and error[0].startswith("toongeo: folder: ") and message in error[0]
+        assert len(error) == 1 and error[0].startswith("toongeo: FOLDER: ") and message in error[0]
     assert not (tmp_path / "out").exists()
 
 
@@ -145,7 +145,7 @@ def test_bad_folders_are_one_line_and_exit_code_2(command, folder, tmp_path, cap
 def test_an_output_that_is_a_file_is_refused_before_the_work(command, folder, tmp_path, capsys):
     (tmp_path / "out").write_text("precious")
     assert main(["bench", command, str(folder), "-o", str(tmp_path / "out")]) == 2
-    assert capsys.readouterr().err.startswith("toongeo: output: expected a folder, got the file ")
+    assert capsys.readouterr().err.startswith("toongeo: --output: expected a folder, got the file ")
     assert (tmp_path / "out").read_text() == "precious"
 
 

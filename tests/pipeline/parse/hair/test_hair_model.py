@@ -44,7 +44,7 @@ def test_a_mirrored_view_gives_the_same_numbers(seen, mirrored):
     assert list(here) == list(there)
     for name, numbers in here.items():
         if not name.startswith(SAMPLED):
-            np.testing.assert_allclose(there[name], numbers, atol=2e-3, err_msg=name)
+            np.testing.assert_allclose(there[name], numbers, atol=5e-3, err_msg=name)
 
 
 def test_a_mirrored_view_has_the_same_surroundings(seen, mirrored, rng):
