@@ -72,6 +72,7 @@ def main() -> int:
             before, after = drift(work, count)
             print(f"{count:6} {name:8} {before:7.1f} MB -> {after:7.1f} MB")
             grown = max(grown, after - before)
+    print(roles("drift", [PORTRAIT.name]))
     return int(grown > MOST_MB)
 
 

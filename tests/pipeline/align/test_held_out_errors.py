@@ -12,7 +12,9 @@ from toongeo.render import ScaledOrthographicCamera
 def exact(artist, random_face, annotated):
     """Landmarks of a face of the model, which all the others tell exactly where one is."""
     identity, expression = random_face(1)
-    return annotated(artist, ScaledOrthographicCamera.look(yaw=10.0, size=512), identity[: len(artist.identity)], expression)
+    return annotated(
+        artist, ScaledOrthographicCamera.look(yaw=10.0, size=512), identity[: len(artist.identity)], expression
+    )
 
 
 def test_a_face_of_the_model_is_foretold_and_a_wrong_point_is_not(artist, exact):
