@@ -30,9 +30,9 @@ def test_a_fit_is_nearer_to_the_truth_than_the_mean_face(truth3d, bench, populat
     """Fewer seeds than the benchmark has."""
     truth, model = bench.truths[population], bench.template
     errors = []
-    for seed in range(2100, 2106):
+    for seed in range(2100, 2112):
         subject = truth.sample(seed)
         errors.append([bench.error(truth, subject, model, V) for V in (model.mean, truth3d.fitted(subject["q"]))])
     mean_face, fit = np.array(errors).T
     assert fit.mean() < share * mean_face.mean()
-    assert (fit < mean_face).sum() >= 3
+    assert (fit < mean_face).sum() >= 6

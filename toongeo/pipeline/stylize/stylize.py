@@ -144,10 +144,10 @@ def subject_for(photo: Bytes, points: Floats, warp: VelocityWarp, look: Style) -
     moved, irises = warp.points(points), find_irises(photo, points)
     size = face_frame(moved).size
     before = face_frame(points).size
-    smaller = min(1.0, WORKING_SIZE / before)
+    smaller = WORKING_SIZE / before
     shape = (round(smaller * photo.shape[0]), round(smaller * photo.shape[1]))
     light = head_light(fit, shape, smaller, before * smaller)
-    places = np.asarray(reduced(sources, min(1.0, WORKING_SIZE / size)), np.float64)  # of the reduced drawing's pixels
+    places = np.asarray(reduced(sources, WORKING_SIZE / size), np.float64)  # of the reduced drawing's pixels
     there = placed_in(places, smaller)
     head, face, shade = (_taken(plane, there) for plane in (light.head, light.face, light.shade))
     right, left = (None if iris is None else warp.points(iris.centre) for iris in irises[::-1])

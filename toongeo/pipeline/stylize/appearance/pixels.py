@@ -13,10 +13,9 @@ _EDGE = 1.4  # px over which an antialiased edge goes from 0 to 1: the diagonal 
 
 
 def reduced(picture: Singles, factor: float) -> Singles:
-    """A picture (h, w[, c]) made smaller by area means; itself if the factor is 1 or more."""
-    if factor >= 1:
-        return picture
-    return np.asarray(cv2.resize(picture, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA))
+    """A picture (h, w[, c]) made smaller by area means, or larger by cubic interpolation."""
+    kind = cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC
+    return np.asarray(cv2.resize(picture, None, fx=factor, fy=factor, interpolation=kind))
 
 
 def enlarged(picture: Singles, shape: tuple[int, ...]) -> Singles:

@@ -78,7 +78,7 @@ def subject_of(
     tolerance: float,
 ) -> Subject:
     """Abstract a warped picture and find its skin; ``light`` and ``hair`` (h, w) are of the reduced picture."""
-    factor = min(1.0, WORKING_SIZE / size)
+    factor = WORKING_SIZE / size
     small, flow = abstracted(reduced(cielab(picture), factor), size * factor, passes, tolerance)
     lines = line_response(small[..., 0], flow, size * factor)
     skin = skin_region(small, placed_in(landmarks, factor), size * factor, light, hair)
