@@ -119,7 +119,8 @@ def make_avatar(
         ``rig="caricature"`` does.
     rig : {"transfer", "caricature"}
         Where the expressions come from: the template's, by deformation transfer, or the drawing's own, reconstructed
-        from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes some seconds.
+        from landmarks that keep its exaggeration (:func:`toongeo.caricature_rig`), which takes a quarter of a
+        minute.
     hair : bool or HairModeler
         Build hair as a mesh of its own, for which the skull gives way (:func:`toongeo.make_room`,
         :func:`toongeo.build_hair`, or what is given). Where the hair of the picture cannot be told from the rest,
