@@ -19,13 +19,24 @@ class SpdFactor:
     """The factor of a symmetric positive definite matrix, without pivoting; a copy or a pickle of it factors anew.
 
     The ordering alone is not enough: with SuperLU's default pivoting the fill-in explodes.
+
+    Raises
+    ------
+    ValueError
+        If the matrix is singular.
     """
 
     def __init__(self, A: sp.csc_matrix) -> None:
         self._A = A
         with one_thread():
             symmetric = {"SymmetricMode": True}
-            self._factor = splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
+            try:
+                self._factor = splu(A, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=symmetric)
+            except RuntimeError as error:  # a pivot that is exactly 0
+                raise ValueError(
+                    "V, F: expected a mesh whose equations can be solved, got one whose system is singular: triangles "
+                    "too thin, or sizes too different, for double precision"
+                ) from error
 
     def __reduce__(self) -> tuple[type, tuple[sp.csc_matrix]]:
         return SpdFactor, (self._A,)
