@@ -1,13 +1,12 @@
-"""Sheets of the styles: photograph and drawings above, avatars of photograph, toon and chibi below.
+"""A sheet of the styles: photograph and drawings above, avatars of photograph, toon and chibi below.
 
-usage: PYTHONPATH=.:data_templates/build python docs/figures/make_style_sheets.py
+usage: python docs/figures/make_style_sheets.py
 """
 
 from pathlib import Path
 
 import cv2
 import numpy as np
-from renders.scene import random_scene
 
 from toongeo import make_avatar, read_image, read_landmarks, stylize
 from toongeo.io import write_image
@@ -16,14 +15,10 @@ from toongeo.pipeline import STYLES
 HERE = Path(__file__).parent
 PORTRAITS = HERE.parents[1] / "examples" / "portraits"
 TILE = 260
-SEEDS = {"render_beard": (78, 3), "render_fringe": (78, 1)}  # none of those that constants were chosen on
 
 
 def main() -> None:
     sheet("astronaut", read_image(PORTRAITS / "astronaut.png"), read_landmarks(PORTRAITS / "astronaut.pts"))
-    for name, seed in SEEDS.items():
-        scene = random_scene(np.random.default_rng(seed), "person", size=420)
-        sheet(name, np.clip(scene.picture, 0, 255).astype(np.uint8), scene.landmarks)
 
 
 def sheet(name: str, img: np.ndarray, landmarks: np.ndarray) -> None:
