@@ -13,7 +13,7 @@ OTHER = str(PORTRAITS / "astronaut.png")
 def no_work(monkeypatch, tmp_path):
     """Fails if a command begins its work."""
     monkeypatch.setattr("toongeo.app.make.make_avatar", None)
-    monkeypatch.setattr("toongeo.app.edit.ExpressionEditor", None)
+    monkeypatch.setattr("toongeo.app.pictures.edit.ExpressionEditor", None)
     monkeypatch.chdir(tmp_path)
 
 

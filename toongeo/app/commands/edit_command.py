@@ -46,8 +46,8 @@ def _pair(text: str) -> tuple[str, float]:
 
 
 def _edit(options: argparse.Namespace) -> None:
-    from toongeo.app.edit import edit
     from toongeo.app.landmark_source import LandmarkSource
+    from toongeo.app.pictures.edit import edit
 
     weights: dict[str, float] = {}
     given = ((name, getattr(options, f"preset_{name}")) for name, _ in _presets())

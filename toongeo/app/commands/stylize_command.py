@@ -23,7 +23,7 @@ def add_stylize(commands: "argparse._SubParsersAction[argparse.ArgumentParser]")
 
 def _stylize(options: argparse.Namespace) -> None:
     from toongeo.app.landmark_source import LandmarkSource
-    from toongeo.app.stylize import stylize_file
+    from toongeo.app.pictures.stylize_file import stylize_file
 
     source = LandmarkSource(options.landmarks, options.scheme, options.face, options.accept)
     stylize_file(options.image, options.output, source, style=options.style, strength=options.strength)

@@ -2,15 +2,13 @@
 
 from pathlib import Path
 
-from toongeo.app.check_output import check_output
 from toongeo.app.landmark_source import LandmarkSource
-from toongeo.io import LandmarkFile, read_image, write_image
+from toongeo.app.pictures.faced_picture import check_picture_output, faced_picture
+from toongeo.io import write_image
 from toongeo.pipeline import stylize
 from toongeo.pipeline.stylize.stylize import check_strength
 
 __all__ = ["stylize_file"]
-
-_OUTPUTS = (".png", ".jpg", ".jpeg", ".webp")
 
 
 def stylize_file(image: Path, output: Path, source: LandmarkSource, *, style: str, strength: float) -> None:
@@ -30,13 +28,8 @@ def stylize_file(image: Path, output: Path, source: LandmarkSource, *, style: st
     ValueError, OSError
         For bad input, or an output that cannot be written or is a file that is read; checked before the work.
     """
-    if output.suffix.lower() not in _OUTPUTS:
-        raise ValueError(f"output: expected a name that ends in {', '.join(_OUTPUTS)}, got {output}")
-    check_output(output, {"image": image, "landmarks": source.file})
+    check_picture_output(image, output, source)
     check_strength(strength)
-    img = read_image(image)
-    points, found = source.landmarks(image, img)
-    if isinstance(found, LandmarkFile):
-        print(found.message)
+    img, points = faced_picture(image, source)
     write_image(output, stylize(img, points, style, strength=strength).img)
     print(f"wrote {output}")

@@ -24,7 +24,7 @@ def editor(avatar, cartoon, monkeypatch):
         return np.zeros((8, 8, 3), np.uint8)
 
     monkeypatch.setattr(ready, "frame", frame)
-    monkeypatch.setattr("toongeo.app.edit.ExpressionEditor", lambda img, points: ready)
+    monkeypatch.setattr("toongeo.app.pictures.edit.ExpressionEditor", lambda img, points: ready)
     return ready, asked
 
 

@@ -1,0 +1,1 @@
+"""Commands that make a picture of a picture."""
