@@ -18,7 +18,7 @@ import numpy as np
 from pictures import pictures, roles
 
 from toongeo import align_face, fit_3dmm, fit_lids, parse_face, read_image, read_landmarks
-from toongeo.avatar.rigged import rigged
+from toongeo.avatar.making.rigged import rigged
 from toongeo.geometry import self_intersections
 from toongeo.pipeline import fit_cranium
 from toongeo.pipeline.align.size_teeth import size_teeth

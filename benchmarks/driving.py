@@ -29,7 +29,7 @@ from scipy.optimize import least_squares
 from tests.driving.conftest import film, moves_landmarks, rms, smooth_weights
 from toongeo import make_avatar, read_image, read_landmarks
 from toongeo.driving import LandmarkDriver, LandmarkRig, send_weights
-from toongeo.driving.landmark_pose import _jacobian, landmark_pose
+from toongeo.driving.landmarks.landmark_pose import _jacobian, landmark_pose
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
 
 ROOT = Path(__file__).parents[1]

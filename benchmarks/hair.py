@@ -31,7 +31,7 @@ import numpy as np
 
 import toongeo as tg
 from toongeo.avatar import Avatar
-from toongeo.avatar.add_hair import add_hair
+from toongeo.avatar.making.add_hair import add_hair
 from toongeo.geometry import self_intersections
 from toongeo.model.expression_schemes import PRESETS
 from toongeo.pipeline import Hair

@@ -7,8 +7,8 @@ import pytest
 
 import toongeo as tg
 from tests.pipeline.hair.conftest import helmet
-from toongeo.avatar.add_hair import add_hair, under_hair
 from toongeo.avatar.hair_springs import hair_springs
+from toongeo.avatar.making.add_hair import add_hair, under_hair
 from toongeo.io import glb_scene, read_glb
 from toongeo.protocols import FaceLabel, HairMask
 

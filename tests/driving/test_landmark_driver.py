@@ -5,7 +5,7 @@ import pytest
 
 from tests.driving.conftest import film, moves_landmarks, rms, smooth_weights
 from toongeo.driving import LandmarkDriver, LandmarkRig
-from toongeo.driving.landmark_noise import LEAST_NOISE, noise_of
+from toongeo.driving.landmarks.landmark_noise import LEAST_NOISE, noise_of
 from toongeo.model.expression_schemes import EXPRESSIONS
 
 NAMES = ("moustache_man", "blue_girl", "astronaut")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from toongeo.driving.landmark_frames import landmark_frames
+from toongeo.driving.landmarks.landmark_frames import landmark_frames
 from toongeo.io import landmark_array
 from toongeo.io.point_array import point_array
 

@@ -8,13 +8,13 @@ from typing import Any, Literal
 
 import numpy as np
 
-from toongeo.avatar.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.avatar import Avatar
-from toongeo.avatar.beyond import beyond_warnings
+from toongeo.avatar.making.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
+from toongeo.avatar.making.beyond import beyond_warnings
+from toongeo.avatar.making.rigged import mouth_warnings, posed, rigged
+from toongeo.avatar.making.styled import check_stylizer, styled
 from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, detection_warnings, eye_warnings, landmark_errors, shape_warnings
-from toongeo.avatar.rigged import mouth_warnings, posed, rigged
-from toongeo.avatar.styled import check_stylizer, styled
 from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import check_image
 from toongeo.metrics import mesh_quality

@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike
 
 from toongeo.arrays import Floats
 from toongeo.avatar.avatar import Avatar
-from toongeo.driving.landmark_frames import landmark_frames
-from toongeo.driving.landmark_noise import FIRST_NOISE, doubt_of, noise_of
-from toongeo.driving.landmark_pose import FEWEST, landmark_pose, landmark_poses
 from toongeo.driving.landmark_rig import LandmarkRig
+from toongeo.driving.landmarks.landmark_frames import landmark_frames
+from toongeo.driving.landmarks.landmark_noise import FIRST_NOISE, doubt_of, noise_of
+from toongeo.driving.landmarks.landmark_pose import FEWEST, landmark_pose, landmark_poses
 from toongeo.driving.one_euro_filter import OneEuroFilter, smoothed_both_ways
 from toongeo.driving.performer_of_frames import performer_of_frames
 from toongeo.geometry.one_thread import one_thread

@@ -3,9 +3,9 @@
 import numpy as np
 
 from toongeo.arrays import Floats
-from toongeo.driving.landmark_noise import FIRST_NOISE, doubt_of
-from toongeo.driving.landmark_pose import landmark_poses
 from toongeo.driving.landmark_rig import LandmarkRig
+from toongeo.driving.landmarks.landmark_noise import FIRST_NOISE, doubt_of
+from toongeo.driving.landmarks.landmark_pose import landmark_poses
 
 __all__ = ["neutral_landmarks", "performer_of_frames"]
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.driving.conftest import rms
-from toongeo.driving.landmark_pose import LandmarkPose
 from toongeo.driving.landmark_rig import LandmarkRig, PerformerFace
+from toongeo.driving.landmarks.landmark_pose import LandmarkPose
 from toongeo.driving.picture.eye_aperture import eye_apertures
 from toongeo.driving.picture.picture_pose import picture_pose, slopes
 from toongeo.driving.picture.skin_reader import SkinReader

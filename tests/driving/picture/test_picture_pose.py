@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from toongeo.driving.landmark_pose import LandmarkPose
 from toongeo.driving.landmark_rig import LandmarkRig, PerformerFace
+from toongeo.driving.landmarks.landmark_pose import LandmarkPose
 from toongeo.driving.picture.picture_pose import _jacobian, _sight, picture_error, picture_pose, slopes
 from toongeo.driving.picture.reader_of_film import reader_of_film
 from toongeo.driving.picture.skin_reader import SkinReader

@@ -13,8 +13,8 @@ import numpy as np
 
 from toongeo._read_only import read_only
 from toongeo.arrays import Floats
-from toongeo.driving.landmark_pose import LandmarkPose
 from toongeo.driving.landmark_rig import LandmarkRig
+from toongeo.driving.landmarks.landmark_pose import LandmarkPose
 from toongeo.driving.picture.skin_samples import Grey, posed_px
 from toongeo.geometry.polyline import arc_shares, interpolated
 from toongeo.model.ibug68 import LID_RIMS

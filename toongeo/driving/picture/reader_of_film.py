@@ -11,8 +11,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from toongeo.arrays import Bytes, Floats
-from toongeo.driving.landmark_pose import FEWEST, LandmarkPose
 from toongeo.driving.landmark_rig import LandmarkRig, PerformerFace
+from toongeo.driving.landmarks.landmark_pose import FEWEST, LandmarkPose
 from toongeo.driving.performer_of_frames import neutral_landmarks
 from toongeo.driving.picture.skin_reader import SkinReader
 

@@ -10,8 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from toongeo.arrays import Bytes, Floats
-from toongeo.driving.landmark_pose import LandmarkPose, landmark_pose
 from toongeo.driving.landmark_rig import PerformerFace
+from toongeo.driving.landmarks.landmark_pose import LandmarkPose, landmark_pose
 from toongeo.driving.picture.eye_aperture import eye_apertures
 from toongeo.driving.picture.picture_pose import Steps, picture_error, picture_pose, slopes
 from toongeo.driving.picture.skin_samples import FACE_PX, Grey, shrunken, skin_samples

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from toongeo._read_only import read_only
 from toongeo.arrays import Bytes, Floats
-from toongeo.driving.landmark_pose import LandmarkPose
 from toongeo.driving.landmark_rig import LandmarkRig, PerformerFace
+from toongeo.driving.landmarks.landmark_pose import LandmarkPose
 from toongeo.geometry.operators.vertex_normals import vertex_normals
 from toongeo.render import rasterize, sample_image
 

@@ -1,6 +1,6 @@
 import dataclasses
 
-from toongeo.avatar.rigged import mouth_warnings, posed
+from toongeo.avatar.making.rigged import mouth_warnings, posed
 
 
 def test_teeth_and_tongue_lie_in_the_picture_as_the_pose_has_them(avatars):

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo.arrays import Floats
-from toongeo.driving.bounded_quadratic import bounded_quadratic
 from toongeo.driving.landmark_rig import LandmarkRig
+from toongeo.driving.landmarks.bounded_quadratic import bounded_quadratic
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toongeo.driving.bounded_quadratic import bounded_quadratic
+from toongeo.driving.landmarks.bounded_quadratic import bounded_quadratic
 
 
 @pytest.mark.parametrize("seed", range(20))

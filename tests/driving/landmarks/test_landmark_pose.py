@@ -4,7 +4,7 @@ import numpy as np
 
 from tests.driving.conftest import film
 from toongeo.driving import LandmarkRig
-from toongeo.driving.landmark_pose import LandmarkPose, _jacobian, landmark_pose
+from toongeo.driving.landmarks.landmark_pose import LandmarkPose, _jacobian, landmark_pose
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
 from toongeo.render import ScaledOrthographicCamera
 

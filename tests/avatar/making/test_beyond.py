@@ -9,7 +9,7 @@ import pytest
 from tests.conftest import CARTOONS, PORTRAITS
 from toongeo import align_face, build_rig, fit_3dmm, read_image, read_landmarks
 from toongeo.app.cli import main
-from toongeo.avatar.beyond import beyond_warnings
+from toongeo.avatar.making.beyond import beyond_warnings
 from toongeo.io import write_image
 from toongeo.pipeline import landmark_evidence
 from toongeo.render import ScaledOrthographicCamera

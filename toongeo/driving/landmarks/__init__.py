@@ -1,0 +1,1 @@
+"""Points of a performer, and the pose that tells most of them."""
