@@ -1,0 +1,344 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 9 Deformation transfer
+#
+# **Question.** An artist has modelled one head, and then the same head with its jaw open, winking, smiling: 46 times.
+# Now a second head comes along, with a larger jaw, a smaller mouth, enormous eyes. How does it open *its* jaw and close
+# *its* eyes, when nobody models anything again?
+#
+# The answer of this lesson is twenty lines of numpy. You need to know arrays, matrix products and least squares; what a
+# mesh is, and what a *deformation gradient* is, is said on the way. The method is that of R. W. Sumner and J. Popović,
+# *Deformation transfer for triangle meshes*, 2004.
+
+# %%
+import matplotlib.pyplot as plt
+import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+import toongeo as tg
+from toongeo.geometry import vertex_components
+from toongeo.model import data_path
+from toongeo.render import ScaledOrthographicCamera, Surface, render_mesh
+
+
+def show(pictures, titles, *, rows=1, side=2.2):
+    """Pictures in rows, a title above each."""
+    figure, axes = plt.subplots(rows, len(pictures) // rows, dpi=90, squeeze=False, layout="compressed")
+    figure.set_size_inches(side * len(pictures) / rows, rows * (side + 0.3))
+    for axis, picture, title in zip(axes.flat, pictures, titles, strict=True):
+        axis.imshow(picture)
+        axis.set_title(title, fontsize=9)
+        axis.axis("off")
+
+
+# %% [markdown]
+# ## A mesh, and two things to deform
+#
+# A mesh is two arrays. `V` (n, 3) holds the *vertices*, points in space. `F` (m, 3) holds the *triangles*: each row
+# names three vertices. Two meshes with the same `F` and as many vertices *correspond*: vertex 17 of one is vertex 17 of
+# the other, whatever they look like.
+#
+# Before any face, take two bars. Each is a tube of square rings, closed at both ends. The source is thin and straight,
+# and a second version of it is bent to a quarter of a circle. The target is longer, and as fat as a bottle. Both have
+# the same triangles.
+
+
+# %%
+def bar(along, thick):
+    """Vertices (n, 3) of a bar whose rings stand at `along` (r,) and are `thick` (r,), and its triangles (m, 3)."""
+    square = np.array([(-1, -1), (0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0)])
+    rings = np.array([[(x, t * y, t * z) for y, z in square] for x, t in zip(along, thick, strict=True)])
+    r, sides = len(along), len(square)
+    i, j = np.meshgrid(np.arange(r - 1), np.arange(sides), indexing="ij")
+    a, b = i * sides + j, i * sides + (j + 1) % sides
+    walls = np.stack([a, b, b + sides, a, b + sides, a + sides], -1).reshape(-1, 3)
+    k, end = np.arange(sides), (r - 1) * sides
+    first = np.stack([np.full(sides, r * sides), (k + 1) % sides, k], 1)
+    last = np.stack([np.full(sides, r * sides + 1), end + k, end + (k + 1) % sides], 1)
+    return np.vstack([rings.reshape(-1, 3), rings[0].mean(0), rings[-1].mean(0)]), np.vstack([walls, first, last])
+
+
+def bent(V, length):
+    """A bar (n, 3) that lay along x, bent upwards to a quarter of a circle as long as it was."""
+    radius = length / (np.pi / 2)
+    angle = V[:, 0] / radius
+    return np.column_stack([(radius - V[:, 1]) * np.sin(angle), radius - (radius - V[:, 1]) * np.cos(angle), V[:, 2]])
+
+
+s = np.linspace(0, 1, 33)
+S, F = bar(20 * s, np.ones(33))
+S_bent = bent(S, 20)
+T, _ = bar(30 * s, 1.8 + 0.8 * np.sin(7 * s))
+
+
+def clay(V, F, centre, extent, yaw=0.0, pitch=0.0, side=220):
+    """Picture of a mesh as a sculptor's clay."""
+    camera = ScaledOrthographicCamera.look(yaw, pitch, size=side, centre=centre, extent=extent)
+    return render_mesh(Surface(V, F), camera, side, shading="clay")
+
+
+# %% [markdown]
+# ## The obvious idea, and why it fails
+#
+# The obvious idea is to copy *displacements*: move every vertex of the target by as much as its partner on the source
+# moves. In the row of four pictures the thin bar is straight, then bent; the bottle is straight, and then deformed by
+# copied displacements: it is sheared and pinched, and does not turn by a right angle.
+
+# %%
+copied = T + (S_bent - S)
+views = [clay(X, F, (13, 8, 0), 38) for X in (S, S_bent, T, copied)]
+show(views, ["source S", "source, deformed", "target T", "displacements copied"])
+
+# %% [markdown]
+# The reason: a displacement tells where a vertex of *that* mesh goes. It does not say what happens to the surface
+# around it: this piece turned by 40 degrees, that one grew by a tenth. What happens to the surface is what we want to
+# carry over.
+#
+# ## The deformation gradient of a triangle
+#
+# Look at one triangle with corners $v_1, v_2, v_3$. Two of its edges leave the first corner, $v_2 - v_1$ and
+# $v_3 - v_1$. After the deformation they are $\tilde v_2 - \tilde v_1$ and $\tilde v_3 - \tilde v_1$. We look for the
+# 3 x 3 matrix $Q$ that takes the old edges to the new ones. Turning, growing and shearing are all matrices, and where
+# the triangle stands plays no part, because edges are differences.
+#
+# Two edges do not determine $Q$: nothing says yet what it does across the triangle. So a third edge is added, along
+# the normal, which leads to a *fourth vertex* $v_4$:
+#
+# $$ v_4 = v_1 + \frac{n}{\sqrt{|n|}}, \qquad n = (v_2 - v_1) \times (v_3 - v_1). $$
+#
+# (The cross product $n$ is as long as twice the area of the triangle, a length *squared*. Divided by the root of its
+# length it is as long as a length, so that a triangle twice as large has a third edge twice as long. Exercise 3 shows
+# what goes wrong otherwise.) With the three edges as the columns of a matrix $E$,
+#
+# $$ E = [\,v_2 - v_1,\; v_3 - v_1,\; v_4 - v_1\,], \qquad Q\,E = \tilde E \quad\Longrightarrow\quad
+# Q = \tilde E\,E^{-1}. $$
+
+
+# %%
+def frames(V, F):
+    """E (m, 3, 3) of every triangle: its columns are two edges, and the third along the normal."""
+    v1, v2, v3 = V[F[:, 0]], V[F[:, 1]], V[F[:, 2]]
+    n = np.cross(v2 - v1, v3 - v1)
+    return np.stack([v2 - v1, v3 - v1, n / np.sqrt(np.linalg.norm(n, axis=1))[:, None]], axis=2)
+
+
+# %% [markdown]
+# Try it with a triangle that is turned by 30 degrees about z and made twice as large, and shifted. We know the matrix,
+# and $Q$ finds it, wherever the triangle went.
+
+# %%
+triangle, one = np.array([[0.0, 0, 0], [2, 0, 0], [0.5, 1, 0]]), np.array([[0, 1, 2]])
+c, d = np.cos(np.pi / 6), np.sin(np.pi / 6)
+M = 2 * np.array([[c, -d, 0], [d, c, 0], [0, 0, 1]])
+moved = triangle @ M.T + [5, 1, 0]  # vertices are rows, so the matrix stands on the right, transposed
+Q = frames(moved, one) @ np.linalg.inv(frames(triangle, one))
+print(Q[0].round(3))
+q_error = np.abs(Q[0] - M).max()
+
+# %% [markdown]
+# The drawing below shows this triangle before and after, with its three edges as arrows: the two along its sides, and
+# the third, which stands on it.
+
+# %%
+figure = plt.figure(figsize=(6, 3), dpi=90)
+for k, (V, title) in enumerate(((triangle, "E: before"), (moved - [5, 1, 0], "Q E: after"))):
+    axis = figure.add_subplot(1, 2, k + 1, projection="3d")
+    axis.plot_trisurf(*V.T, triangles=one, alpha=0.3)
+    for edge, colour in zip(frames(V, one)[0].T, ("C0", "C1", "C2"), strict=True):
+        axis.quiver(*V[0], *edge, color=colour, arrow_length_ratio=0.15)
+    axis.set(xlim=(-1, 4), ylim=(-1, 4), zlim=(0, 4), title=title)
+    axis.view_init(25, -70)
+    axis.tick_params(labelsize=6)
+
+# %% [markdown]
+# ## What is asked of the target
+#
+# Compute $Q_j$ for every triangle $j$ of the source. They are the whole deformation. Now the target gets unknown new
+# vertices $x$, with gradients $Q'_j$ of its own, and these should be those of the source:
+#
+# $$ \min_x \sum_j \big\| Q_j - Q'_j(x) \big\|^2 . $$
+#
+# Why not just *set* $Q'_j = Q_j$? Because neighbouring triangles share vertices. If each did as it liked the surface
+# would fall apart; on the target the $Q_j$ do not fit together exactly, so they are met as well as possible, in the
+# sense of least squares.
+#
+# And this is least squares of the simple, linear sort. With $W_j = E_j^{-1}$ of the target *at rest*, which is a
+# constant,
+#
+# $$ Q'_j(x) = [\,x_2 - x_1,\; x_3 - x_1,\; x_4 - x_1\,]\; W_j , $$
+#
+# and every number in it is a sum of unknowns times constants. Put the differences into a matrix as well:
+#
+# $$ [\,x_2 - x_1,\; x_3 - x_1,\; x_4 - x_1\,] = [\,x_1, x_2, x_3, x_4\,]\; D, \qquad
+# D = \begin{bmatrix} -1 & -1 & -1 \\ 1 & 0 & 0 \\ 0 & 1 & 0 \\ 0 & 0 & 1 \end{bmatrix} $$
+#
+# so that $Q_j'^{\,T} = (D\,W_j)^T\,[x_1, x_2, x_3, x_4]^T$. That is three rows for triangle $j$, with four numbers
+# each; and the same rows serve the x, the y and the z of the vertices. Stack the rows of all triangles, and you have
+# a tall sparse matrix $A$, with a column for every vertex and one for every fourth vertex:
+#
+# $$ \min_X \| A X - B \|^2, \qquad A\ (3m \times (n + m)), \quad X\ ((n + m) \times 3), \quad B\ (3m \times 3)
+# \text{ with the } Q_j^{\,T} . $$
+#
+# One thing is missing. Edges do not know where the mesh stands: shift all of it, and nothing changes. So some vertices
+# are *held*, at places that we name. One would do. Least squares with some unknowns given is solved by the normal
+# equations $A^T A\,X = A^T B$ without the rows of the given ones, and their part moved to the right side.
+#
+# ## Twenty lines
+
+
+# %%
+def transfer(S, S_new, F, T, held, places):
+    """Deform T (n, 3) as S (n, 3) is deformed to S_new; vertices `held` (p,) go to `places` (p, 3)."""
+    Q = frames(S_new, F) @ np.linalg.inv(frames(S, F))  # (m, 3, 3): what happens to each triangle
+    W = np.linalg.inv(frames(T, F))
+    D = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    n, m = len(T), len(F)
+    rows = np.broadcast_to(3 * np.arange(m)[:, None, None] + np.arange(3), (m, 4, 3))
+    columns = np.broadcast_to(np.column_stack([F, n + np.arange(m)])[:, :, None], (m, 4, 3))
+    A = sp.csr_array(((D @ W).ravel(), (rows.ravel(), columns.ravel())), shape=(3 * m, n + m))
+    B = Q.transpose(0, 2, 1).reshape(3 * m, 3)
+    N, right = sp.csc_array(A.T @ A), A.T @ B
+    free = np.setdiff1d(np.arange(n + m), held)
+    X = np.zeros((n + m, 3))
+    X[held] = places
+    X[free] = splu(N[free][:, free]).solve(right[free] - N[free][:, held] @ X[held])
+    return X[:n]
+
+
+# %% [markdown]
+# Line by line: `Q` are the gradients of the source. `D @ W` (m, 4, 3) holds for each triangle how its four corners
+# enter the three columns of $Q'$; the entry of corner $k$ and column $r$ goes to row $3j + r$ and to the column of that
+# corner, which `rows` and `columns` say. `csr_array` builds a sparse matrix from such triples. `splu` factors
+# the normal matrix once and solves for x, y and z.
+#
+# ## The bottle bends
+#
+# We hold the first ring of the bottle. The row of pictures shows the bent source, the bottle at rest, and the bottle
+# after the transfer, from the front and in a three-quarter view: it turns by a right angle, and stays as fat as it was.
+
+# %%
+held = np.arange(8)
+T_bent = transfer(S, S_bent, F, T, held, T[held])
+show(
+    [clay(S_bent, F, (13, 8, 0), 38), clay(T, F, (13, 8, 0), 38)]
+    + [clay(T_bent, F, (13, 8, 0), 38, yaw, pitch) for yaw, pitch in ((0, 0), (-35, 20))],
+    ["source, deformed", "target T", "transferred", "transferred, turned"],
+)
+
+
+def end_angle(V):
+    """Degrees by which the last piece of a bar is turned: the way from the last ring but three to the last."""
+    along = V[-10:-2].mean(0) - V[-34:-26].mean(0)
+    return np.degrees(np.arctan2(along[1], along[0]))
+
+
+angles = {name: end_angle(V) for name, V in (("source", S_bent), ("copied", copied), ("transferred", T_bent))}
+print({name: f"{angle:.1f} degrees" for name, angle in angles.items()})
+
+# %% [markdown]
+# ## Three checks
+#
+# A method that cannot fail a test is not understood. Three things can be said about it before any picture:
+#
+# 1. No deformation of the source gives none of the target.
+# 2. If the source is turned and resized as a whole, by $M = s R$ with a rotation $R$, all gradients are $M$. They fit
+#    together, and the target is turned and resized by $M$, exactly. (This is not so for a matrix $M$ that shears: it
+#    takes the triangles along, but the normal of the sheared triangle is not $M$ times the old one.)
+# 3. The library does the same. `tg.DeformationTransfer` eliminates the fourth vertices beforehand: each occurs in one
+#    term only, and drops out. That leaves a third of the unknowns and the same minimum.
+
+# %%
+rest = transfer(S, S, F, T, held, T[held])
+turned = transfer(S, S @ M.T, F, T, held, T[held] @ M.T)
+library = tg.deformation_transfer(S, S_bent, F, T, pinned=held)
+checks = {
+    "rest": np.abs(rest - T).max(),
+    "turned": np.abs(turned - T @ M.T).max(),
+    "library": np.abs(library - T_bent).max(),
+}
+print({name: f"{error:.0e}" for name, error in checks.items()})
+assert max(checks.values()) < 1e-8
+
+# %% [markdown]
+# ## Faces
+#
+# Now the heads. The source is the mean face of the library's model, in millimetres. It comes with 46 expressions as
+# displacements of its 19057 vertices: `model.expression[i]` (n, 3). The targets are two drawings of this repository,
+# fitted and aligned by the functions that other lessons take apart; here they are just two meshes with the same
+# triangles and other proportions. In front of the lens, from left to right: the source, a man with a moustache, and a
+# manga girl, as clay seen from three quarters.
+
+
+# %%
+def head_of(name):
+    """Vertices (n, 3), mm, of a portrait's face."""
+    path = data_path(f"examples/portraits/{name}.png")
+    img, landmarks = tg.read_image(path), tg.read_landmarks(path.with_suffix(".pts"))
+    return np.array(tg.align_face(tg.fit_3dmm(img, landmarks), landmarks).vertices)
+
+
+model = tg.default_model()
+heads = {name: head_of(name) for name in ("moustache_man", "manga_girl")}
+
+
+def portrait(V, yaw=-30.0, extent=230.0, centre=(0, -25, 20), side=260):
+    return clay(V, model.faces, centre, extent, yaw, side=side)
+
+
+show([portrait(model.mean), *(portrait(V) for V in heads.values())], ["source: the mean face", *heads], side=2.6)
+
+# %% [markdown]
+# ### Which vertices are held
+#
+# The neck, the ears and the back of the skull are not moved by any expression of the source. They are held where the
+# target has them: each expression then ends where the face ends. A mesh can also consist of several *components* that
+# share no edge; here skin, tongue, upper and lower teeth. What one component does tells nothing about another, so each
+# needs a vertex that is held. The first vertex of a component that has none goes as far as it goes on the source.
+
+# %%
+moves = np.abs(model.expression[: model.n_named]).max(axis=(0, 2))
+still = np.flatnonzero(moves < 0.05)  # mm
+component = vertex_components(model.faces, len(model.mean))
+first = np.unique(component, return_index=True)[1]
+loose = np.array([v for c, v in enumerate(first) if not np.isin(component[still], c).any()])
+held = np.concatenate([still, loose])
+print(f"{len(first)} components; {len(still)} of {len(model.mean)} vertices are still, {len(loose)} others are held")
+
+
+def expressed(name, T):
+    """T (n, 3) with an expression of the model, by the twenty lines."""
+    delta = model.expression[model.expression_index(name)].astype(float)
+    places = np.concatenate([T[still], T[loose] + delta[loose]])
+    return transfer(model.mean, model.mean + delta, model.faces, T, held, places)
+
+
+# %% [markdown]
+# ### Jaw and lids
+#
+# Two expressions suffice to see it. The first figure has a row for each head. In each row: the head at rest, the jaw
+# opened by copied displacements, the jaw opened by transfer, the left lids closed by copied displacements, and closed
+# by transfer. The manga girl's eyes are more than twice as high as those of the source: copied displacements leave
+# them open, transferred ones carry the lids much farther.
+
+# %%
+results = {}
+pictures = []
+for head, T in heads.items():
+    pictures.append(portrait(T, side=200))
+    for name in ("jawOpen", "eyeBlinkLeft"):
+        copy = T + model.expression[model.expression_index(name)]
+        results[head, name] = copy, expressed(name, T)
+        pictures += [portrait(V, side=200) for V in results[head, name]]
+show(pictures, ["at rest", "jaw: copied", "jaw: transferred", "blink: copied", "blink: transferred"] * 2, rows=2, side=1.9)
