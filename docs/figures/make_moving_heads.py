@@ -11,13 +11,14 @@ import cv2
 import numpy as np
 from PIL import Image
 
-from toongeo import Avatar, load_avatar, make_avatar, preset, read_image, read_landmarks
+from toongeo import Avatar, ScaledOrthographicCamera, load_avatar, make_avatar, preset, read_image, read_landmarks
 
 HERE = Path(__file__).parent
 PORTRAITS = HERE.parents[1] / "examples" / "portraits"
-TILE, FRAMES, FPS = 176, 60, 15  # px, of 4 s
-QUALITY = 62  # of WebP: below that faces of flat colour show blocks
-YAW, NOD = 40.0, 5.0  # degrees to either side
+TILE, FRAMES, FPS = 192, 60, 15  # px, of 4 s
+QUALITY = 70  # of WebP: below that faces of flat colour show blocks
+YAW, NOD = 32.0, 5.0  # degrees to either side
+EXTENT = 0.98  # of the height of head and neck that a tile shows: the end of the neck is cut off
 WIDE = 1.75  # of the square about the landmarks, which holds hair and chin
 
 # Each head: part of the turn by which it is ahead, and what it does: middle and length in turns, and the weights.
@@ -26,7 +27,7 @@ TALK = tuple((0.30 + 0.055 * k, 0.11, preset(f"viseme_{name}")) for k, name in e
 BLINK = {"eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
 ACTS: dict[str, tuple[float, tuple[tuple[float, float, Mapping[str, float]], ...]]] = {
     "moustache_man": (0.0, ((0.35, 0.5, preset("laugh")), (0.8, 0.09, BLINK))),
-    "manga_girl": (0.2, (*TALK, (0.12, 0.09, BLINK), (0.85, 0.3, preset("smile")))),
+    "blonde_girl_threequarter": (0.2, (*TALK, (0.12, 0.09, BLINK), (0.85, 0.3, preset("smile")))),
     "astronaut": (0.55, ((0.3, 0.45, preset("smile")), (0.72, 0.4, preset("surprise")), (0.95, 0.09, BLINK))),
     "blue_girl": (0.4, ((0.3, 0.4, preset("surprise")), (0.75, 0.35, preset("wink")))),
     "beethoven": (0.75, ((0.25, 0.45, preset("anger")), (0.65, 0.3, preset("kiss")), (0.9, 0.09, BLINK))),
@@ -54,12 +55,25 @@ def picture_tile(img: np.ndarray, landmarks: np.ndarray) -> np.ndarray:
     return cv2.warpAffine(shrunk, shift, (TILE, TILE), flags=cv2.INTER_LINEAR, borderValue=(255, 255, 255))
 
 
+def camera_at(avatar: Avatar, yaw: float, pitch: float) -> ScaledOrthographicCamera:
+    """A camera that shows head and hair from above the hair to the middle of the neck."""
+    skin = avatar.rig.neutral[avatar.face.region("skin")]
+    shown = skin if avatar.hair is None else np.vstack([skin, avatar.hair.vertices])
+    low, high = shown.min(0), shown.max(0)
+    extent = EXTENT * (high - low).max()
+    centre = (low + high) / 2
+    centre[1] = high[1] + 0.03 * extent - extent / 2
+    return ScaledOrthographicCamera.look(yaw, pitch, size=TILE, centre=centre, extent=extent)
+
+
 def head_tiles(avatar: Avatar, ahead: float, acts: tuple) -> list[np.ndarray]:
     """The frames of one head."""
     turns = np.arange(FRAMES) / FRAMES
     angles = 2 * np.pi * (turns + ahead)
     return [
-        avatar.render(weights_at(turn, acts), TILE, YAW * np.sin(angle), NOD * np.sin(2 * angle))
+        avatar.render(
+            weights_at(turn, acts), TILE, camera=camera_at(avatar, YAW * np.sin(angle), NOD * np.sin(2 * angle))
+        )
         for turn, angle in zip(turns.tolist(), angles.tolist(), strict=True)
     ]
 
@@ -74,7 +88,7 @@ def main(folder: Path | None = None) -> None:
         print(name)
     frames = [Image.fromarray(np.hstack(tiles)) for tiles in zip(*columns, strict=True)]
     out = HERE / "moving_heads.webp"
-    frames[0].save(out, save_all=True, append_images=frames[1:], duration=1000 // FPS, loop=0, quality=QUALITY, method=6)
+    frames[0].save(out, save_all=True, append_images=frames[1:], duration=1000 // FPS, loop=0, quality=QUALITY, method=4)
     print(out, out.stat().st_size)
 
 
