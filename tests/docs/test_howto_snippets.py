@@ -13,7 +13,7 @@ from toongeo.app.cli import _parser
 PAGES = sorted((ROOT / "docs" / "howto").glob("*.md"))
 READ = [*PAGES, ROOT / "README.md"]
 BLOCK = re.compile(r"^(?:<!-- (?P<note>.*?) -->\n)?```(?P<kind>\w+)\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL)
-SLOW = {"own_mesh", "stylize", "batch", "edit", "own_model", "video"}  # more than five seconds
+SLOW = {"README", "own_mesh", "stylize", "batch", "edit", "own_model", "video"}  # more than five seconds
 NEEDS_NAMES = ("needs", "runs inside")  # what a note may say of a block that is shown only
 
 
@@ -42,7 +42,7 @@ def desk(avatar, tmp_path, monkeypatch):
 
 def params():
     """Pages with Python that runs; slow ones are marked."""
-    pages = [page for page in PAGES if runnable(page)]
+    pages = [page for page in READ if runnable(page)]
     return [pytest.param(p, id=p.stem, marks=[pytest.mark.slow] if p.stem in SLOW else []) for p in pages]
 
 
@@ -86,3 +86,16 @@ def test_commands_are_found():
 def test_links_lead_to_files(page):
     for target in re.findall(r"\]\((?!https?://)([^)#]+)", page.read_text(encoding="utf-8")):
         assert (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").glob("*/*.md")) + READ[-1:], ids=lambda page: page.stem)
+def test_pictures_have_alternative_texts(page):
+    for text, target in re.findall(r"!\[(.*?)\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
+        assert len(text) > 20, target
+
+
+def test_captions_of_the_gallery_are_the_alternative_texts():
+    page = (ROOT / "docs" / "gallery" / "index.md").read_text(encoding="utf-8")
+    for text, target in re.findall(r"!\[(.*?)\]\(([^)]+)\)", page):
+        beneath = " ".join(page.split(f"({target})\n\n", 1)[1].split())
+        assert beneath.startswith(f"{text}."), target
