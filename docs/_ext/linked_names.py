@@ -17,7 +17,7 @@ def _link(app, doctree, docname) -> None:
             continue
         match = _NAME.fullmatch(literal.astext())
         name = match and next((n for n in (f"toongeo.{match[1]}", match[1]) if n in domain.objects), None)
-        if name and not (there := domain.objects[name]).docname == docname:
+        if name and (there := domain.objects[name]).docname != docname:
             literal.replace_self(make_refnode(app.builder, docname, there.docname, there.node_id, literal.deepcopy()))
 
 
