@@ -88,7 +88,9 @@ def main(folder: Path | None = None) -> None:
         print(name)
     frames = [Image.fromarray(np.hstack(tiles)) for tiles in zip(*columns, strict=True)]
     out = HERE / "moving_heads.webp"
-    frames[0].save(out, save_all=True, append_images=frames[1:], duration=1000 // FPS, loop=0, quality=QUALITY, method=4)
+    frames[0].save(
+        out, save_all=True, append_images=frames[1:], duration=1000 // FPS, loop=0, quality=QUALITY, method=4
+    )
     print(out, out.stat().st_size)
 
 

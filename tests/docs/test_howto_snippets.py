@@ -77,7 +77,9 @@ def commands(line):
 
 
 def test_commands_are_found():
-    assert commands("pip install . && toongeo make 'a b.png' -o c.glb  # a face") == [["make", "a b.png", "-o", "c.glb"]]
+    assert commands("pip install . && toongeo make 'a b.png' -o c.glb  # a face") == [
+        ["make", "a b.png", "-o", "c.glb"]
+    ]
     with pytest.raises(SystemExit):
         _parser().parse_args(commands("toongeo make face.png --nonsense -o c.glb")[0])
 
