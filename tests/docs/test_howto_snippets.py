@@ -26,6 +26,12 @@ def runnable(page):
     return [code for note, code in blocks(page, "python") if note is None]
 
 
+def placed(page, code):
+    """Code with its lines where the page has them, for tracebacks."""
+    before = page.read_text(encoding="utf-8").partition(code)[0]
+    return "\n" * before.count("\n") + code
+
+
 @pytest.fixture
 def desk(avatar, tmp_path, monkeypatch):
     """A folder with the files that the pages name."""
@@ -50,7 +56,7 @@ def params():
 def test_the_python_of_a_page_runs(page, desk):
     names = ModuleType(page.stem).__dict__
     for code in runnable(page):
-        exec(compile(code, str(page), "exec"), names)
+        exec(compile(placed(page, code), str(page), "exec"), names)
 
 
 @pytest.mark.parametrize("page", READ, ids=lambda page: page.stem)
