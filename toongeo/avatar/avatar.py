@@ -45,6 +45,23 @@ class Avatar(AvatarStages):
 
     Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
     ``eyes``, ``texture``, ``report``, ``hair`` and ``style``.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> avatar = tg.make_avatar(img, landmarks, hair=False)
+    >>> avatar.vertices({"jawOpen": 0.6}).shape  # mm
+    (19057, 3)
+    >>> avatar.render({"eyeBlinkLeft": 1.0}, size=64).shape
+    (64, 64, 3)
+    >>> len(avatar.names), avatar.names[0]
+    (46, 'browDownLeft')
+    >>> avatar.fit.expression.shape, avatar.rig.deltas.shape, avatar.texture.shape  # what stages gave
+    ((64,), (46, 19057, 3), (1024, 1024, 3))
+    >>> avatar.save("face.glb")  # or .vrm, .usdz, .html, .obj, .ply
     """
 
     __repr__ = brief_repr

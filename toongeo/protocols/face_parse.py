@@ -14,7 +14,16 @@ __all__ = ["FaceLabel", "FaceParse", "FaceParser", "HairFinder", "HairMask"]
 
 
 class FaceLabel(IntEnum):
-    """What a pixel of a parsed face shows. Left and right are the subject's."""
+    """What a pixel of a parsed face shows. Left and right are the subject's.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> int(tg.FaceLabel.HAIR), tg.FaceLabel(10).name
+    (10, 'HAIR')
+    >>> [label.name for label in tg.FaceLabel if label.name.endswith("LIP")]
+    ['UPPER_LIP', 'LOWER_LIP']
+    """
 
     BACKGROUND = 0
     SKIN = 1
@@ -49,6 +58,14 @@ class HairMask:
         How far each pixel is covered by hair: soft where strands mix with what is behind them.
     hat : (H, W) bool, optional
         Pixels of a hat; None or all False where there is none. No pixel is hair and hat.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> hair = tg.HairMask(np.zeros((48, 64), dtype=bool), trusted=False, reasons=("No hair was found.",))
+    >>> hair.mask.shape, hair.trusted
+    ((48, 64), False)
     """
 
     mask: np.ndarray
@@ -92,6 +109,16 @@ class FaceParse:
         How far each label is to be believed.
     hair : HairMask, optional
         The hair that the labels follow, and whether it is to be trusted.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> labels = np.zeros((4, 4), dtype=np.uint8)
+    >>> labels[1:3, 1:3] = tg.FaceLabel.SKIN
+    >>> parse = tg.FaceParse(labels, np.ones((4, 4)))
+    >>> int(parse.mask(tg.FaceLabel.SKIN, tg.FaceLabel.NOSE).sum())
+    4
     """
 
     labels: np.ndarray

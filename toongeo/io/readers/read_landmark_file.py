@@ -34,6 +34,14 @@ class LandmarkFile:
         How many the file holds; faces: in that frame.
     message
         All of this in a sentence for people, and what was guessed.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> file = tg.read_landmark_file(data_path("examples/portraits/moustache_man.pts"))
+    >>> file.points.shape, file.scheme, file.frames
+    ((68, 2), 'ibug68', 1)
     """
 
     points: NDArray[np.float64]

@@ -55,6 +55,17 @@ def load_eos(
     References
     ----------
     P. Huber et al., "A multiresolution 3D morphable face model and fitting framework", VISAPP 2016.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.load_eos("sfm_shape_3448.bin", "ibug_to_sfm.txt")  # doctest: +SKIP
+    >>> from pathlib import Path
+    >>> size = Path("other.bin").write_bytes(bytes(3))
+    >>> tg.load_eos("other.bin", "other.txt")
+    Traceback (most recent call last):
+    ...
+    ValueError: other.bin: expected a binary file of eos, it ends at byte 3
     """
     with refusing(Path(shape), "a shape model of eos"):
         mean, modes, faces, uv = _shape_model(_Reader(Path(shape)))
