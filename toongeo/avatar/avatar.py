@@ -43,8 +43,21 @@ Weights = Mapping[str, float] | np.ndarray | None
 class Avatar(AvatarStages):
     """What :func:`toongeo.make_avatar` builds; every stage's result is kept.
 
-    Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
-    ``eyes``, ``texture``, ``report``, ``hair`` and ``style``.
+    Attributes
+    ----------
+    fit : FaceFit
+    parse : FaceParse
+    face : AlignedFace
+    rig : Rig
+        ``rig.names`` are the 46 expressions, ``rig.deltas`` (46, n, 3) mm their blendshapes.
+    eyes : Eyes
+    texture : (size, size, 3) uint8 RGB
+    report : AvatarReport
+    hair : Hair or None
+        A mesh of its own, rigid on the head; None where hair is painted on the head, or there is none.
+    style : Stylized or None
+        The drawing of a photograph that the avatar was made of; None if it was made of the picture itself, or read
+        from a file.
 
     Examples
     --------

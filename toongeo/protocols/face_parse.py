@@ -14,7 +14,16 @@ __all__ = ["FaceLabel", "FaceParse", "FaceParser", "HairFinder", "HairMask"]
 
 
 class FaceLabel(IntEnum):
-    """What a pixel of a parsed face shows. Left and right are the subject's.
+    """What a pixel of a parsed face shows: a number of uint8. Left and right are the subject's.
+
+    Attributes
+    ----------
+    BACKGROUND, SKIN, BROW_LEFT, BROW_RIGHT, EYE_LEFT, EYE_RIGHT, NOSE, UPPER_LIP, LOWER_LIP, INNER_MOUTH : 0 to 9
+    HAIR, EARS, NECK : 10 to 12
+    OTHER : 13
+        Glasses, hands, beards, black outlines.
+    HAT : 14
+        Caps, hoods, helmets, scarves about the head.
 
     Examples
     --------

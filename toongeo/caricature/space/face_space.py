@@ -83,6 +83,10 @@ def face_space(model: MorphableModel | None = None) -> FaceSpace:
     model : MorphableModel, optional
         `default_model` if None.
 
+    Returns
+    -------
+    FaceSpace
+
     References
     ----------
     Wu et al. 2018, "Alive caricature from 2D to 3D", section 5.1.

@@ -87,6 +87,10 @@ def read_landmark_file(
     one_based
         Whether 1 must be subtracted; None: as the format has it (``.pts``).
 
+    Returns
+    -------
+    LandmarkFile
+
     Raises
     ------
     OSError

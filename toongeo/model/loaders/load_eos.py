@@ -47,6 +47,10 @@ def load_eos(
         ``sfm_model_contours.json``: vertices of the right and the left outline, on which eos looks for the nearest.
         They are regions here, ``contour_right`` and ``contour_left``.
 
+    Returns
+    -------
+    MorphableModel
+
     Raises
     ------
     ValueError

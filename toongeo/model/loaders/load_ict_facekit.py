@@ -36,6 +36,10 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
         ``identity_q (k, v, 3)`` and ``expression_q (e, v, 3)`` as integers with their ``*_scale`` (k,) and (e,),
         ``expression_names`` and ``landmarks68``.
 
+    Returns
+    -------
+    MorphableModel
+
     Raises
     ------
     ValueError

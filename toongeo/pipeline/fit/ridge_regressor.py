@@ -100,6 +100,10 @@ def train_ridge_regressor(
     ridge : float > 0
         Weight of the squared coefficients against the mean squared error.
 
+    Returns
+    -------
+    RidgeRegressor
+
     Raises
     ------
     ValueError
