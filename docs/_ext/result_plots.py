@@ -4,4 +4,4 @@ __all__ = ["setup"]
 
 
 def setup(app):
-    return {"parallel_read_safe": True}
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

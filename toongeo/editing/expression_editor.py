@@ -114,7 +114,7 @@ class ExpressionEditor:
         Parameters
         ----------
         change : mapping of name to weight, (46,) array or (54,) array
-            Added to :attr:`pose`. Names that are left out are as in the picture, and with 0 everywhere so is the frame.
+            Added to `pose`. Names that are left out are as in the picture, and with 0 everywhere so is the frame.
 
         Raises
         ------
