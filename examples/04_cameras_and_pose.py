@@ -339,9 +339,10 @@ plt.show()
 # ## Solutions
 
 # %%
-# 1. It is a rotation, and it fits exactly: the head seen from *behind*, as if it were of glass. For if r1, r2, r3 are the
-#    rows of R, then -r1, r2, -r3 are those of a rotation too, and the third is not seen. That a face hides what is behind it
-#    is not in (1). So look at R[2, 2], the cosine between the view and where the face looks, before you believe a pose.
+# 1. It is a rotation, and it fits exactly: the head seen from *behind*, as if it were of glass. For if r1, r2, r3 are
+#    the rows of R, then -r1, r2, -r3 are those of a rotation too, and the third is not seen. That a face hides what is
+#    behind it is not in (1). So look at R[2, 2], the cosine between the view and where the face looks, before you
+#    believe a pose.
 mirrored = exact.project(points) * [-1, 1]
 s, R, t = pose(points, mirrored)
 left_over = ScaledOrthographicCamera(s, R, t).project(points) - mirrored
