@@ -364,8 +364,8 @@ gap_error = float(np.abs(s * man @ R.T + t - target).max())
 print(f"s = {s:.3f}, largest error {gap_error:.0e} px")
 
 # %%
-# 3. The root mean square distance knows height too, which a turn does not change, and what it loses in width it gains in
-#    depth: it hardly shrinks. (Errors are given in outer-eye distances all the same, because everybody does.)
+# 3. The root mean square distance knows height too, which a turn does not change, and what it loses in width it gains
+#    in depth: it hardly shrinks. (Errors are given in outer-eye distances all the same, because everybody does.)
 units = []
 for degrees in (0, 25, 50):
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
