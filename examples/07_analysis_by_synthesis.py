@@ -89,7 +89,7 @@ x, y = np.meshgrid(grid, -grid)
 inside = x**2 + y**2 < 1
 ball = np.column_stack([x[inside], y[inside], np.sqrt(1 - x[inside] ** 2 - y[inside] ** 2)])
 views = []
-for value in sh_basis(ball).T:
+for value in sh_basis(ball).transpose():
     view = np.full((*x.shape, 3), 1.0)
     shade = plt.get_cmap("coolwarm")(0.5 + 0.5 * value)[:, :3]
     view[inside] = shade
