@@ -74,7 +74,7 @@ def warped(weights):
 
 smile = {"mouthSmileLeft": 0.9, "mouthSmileRight": 0.9, "cheekSquintLeft": 0.5, "cheekSquintRight": 0.5}
 surprise = {
-    "jawOpen": 0.7,
+    "jawOpen": 0.4,
     "browInnerUpLeft": 0.8,
     "browInnerUpRight": 0.8,
     "browOuterUpLeft": 0.8,
@@ -270,8 +270,8 @@ show([frames["surprise"][CROP], kept_frame[CROP]], ["classical generator", "A = 
 print(f"mean difference in the region: {difference:.1f} of 255")
 
 # %% [markdown]
-# *Figure: The surprised man twice, with the classical generator and with one that keeps the old texture: both have an
-# open mouth, with small differences in shade.*
+# *Figure: The surprised man twice, with the classical generator and with one that keeps the old texture: both mouths are
+# open, and the first is darker inside.*
 
 # %%
 numbers: dict[str, float] = {
