@@ -139,9 +139,7 @@ slopes = check_gradient(energy, np.random.default_rng(2).standard_normal(W.size)
 stacked = np.vstack([Xc / np.sqrt(len(X)), np.sqrt(lam) * np.eye(X.shape[1])])
 by_lstsq = np.linalg.lstsq(stacked, np.vstack([Yc / np.sqrt(len(X)), np.zeros(W.shape)]), rcond=None)[0]
 ways_differ = float(np.abs(by_lstsq - W).max() / np.abs(W).max())
-print(
-    f"gradient at the solution {at_optimum:.0e}; Taylor slope {slopes.slopes.min():.2f}; lstsq differs by {ways_differ:.0e}"
-)
+print(f"gradient at its minimum {at_optimum:.0e}; slope {slopes.slopes.min():.2f}; lstsq off by {ways_differ:.0e}")
 
 # %% [markdown]
 # ## 3. How much to hold back

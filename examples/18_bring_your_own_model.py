@@ -220,9 +220,7 @@ same_person = float(np.median(off))
 print(
     f"{len(rigged.identity)} modes, {rigged.n_named} expressions, eyes and teeth: {rigged.has('eyes', 'teeth_upper')}"
 )
-print(
-    f"one person on both surfaces: landmarks {same_person:.2f} mm apart (the template's mean: {np.median(off_mean):.2f})"
-)
+print(f"one person on both: landmarks {same_person:.2f} mm apart (the template's mean: {np.median(off_mean):.2f})")
 
 fit = tg.fit_3dmm(img, landmarks, model=rigged)
 print(f"with the rig, inner landmarks off by {fit.report.rms_percent:.2f} %")
