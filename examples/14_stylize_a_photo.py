@@ -118,10 +118,10 @@ print(f"our flow and the library's differ by at most {flow_difference:.3f} px at
 print(f"there and back: within {there_and_back:.3f} px")
 print(f"area factors from the drawing back to the photograph: {areas.min():.2f} to {areas.max():.2f}, none negative")
 
-grid = np.stack(np.meshgrid(np.arange(95, 366, 9.0), np.arange(20, 291, 9.0)), axis=-1)
+grid = np.stack(np.meshgrid(np.arange(95, 366, 10.0), np.arange(20, 291, 10.0)), axis=-1)
 moved = warp.points(grid)
 extent = (window[1].start, window[1].stop, window[0].stop, window[0].start)
-fig, axes = plt.subplots(1, 3, figsize=(10, 3.4), layout="constrained")
+fig, axes = plt.subplots(1, 3, figsize=(8.4, 2.9), layout="constrained")
 axes[0].imshow(img[window], extent=extent)
 axes[1].imshow(warp.picture(img)[window], extent=extent)
 axes[2].imshow(np.full((*areas.shape, 3), 255, np.uint8)[:2, :2], extent=extent)
@@ -218,7 +218,7 @@ mean_jump = float(np.abs(levels - smooth[..., 0]).max())
 posterized = lab2rgb(np.dstack([levels, smooth[..., 1:]]))
 
 ramp = np.linspace(0, 100, 501)
-fig, axes = plt.subplots(1, 3, figsize=(10, 3.3), layout="constrained")
+fig, axes = plt.subplots(1, 3, figsize=(8.8, 2.9), layout="constrained")
 for slope in (0.5, 2.0, 8.0):
     axes[0].plot(ramp, quantized(ramp, width, slope), label=rf"$\varsigma = {slope:g}$")
 axes[0].set(xlabel="$L$", ylabel="$Q(L)$")
@@ -279,7 +279,7 @@ caricature = tg.stylize(img, landmarks, "caricature")
 colours = [len(np.unique(picture[window].reshape(-1, 3) // 32, axis=0)) for picture in (img, drawn.img, caricature.img)]
 print("different colours (in steps of 32):", dict(zip(("photograph", "chibi", "caricature"), colours, strict=True)))
 
-fig, axes = plt.subplots(1, 4, figsize=(11, 3.1), layout="constrained")
+fig, axes = plt.subplots(1, 4, figsize=(9.6, 2.7), layout="constrained")
 pictures = {"photograph": img, "chibi": drawn.img, "caricature": caricature.img, "chibi, for textures": drawn.texture}
 for ax, (name, picture) in zip(axes, pictures.items(), strict=True):
     ax.imshow(picture[window])
@@ -307,10 +307,9 @@ plt.show()
 #
 # ## Solutions
 #
-# **1.** In the plane, for one eye. Each squaring samples the map at its own values. On a grid that needs
-# interpolation, which limits the precision; here the formula is used at the first step and points are pushed $2^n$
-# times, which is the same map without interpolation. The error of $x + v/2^n$ per step falls with $4^{-n}$, of $2^n$
-# steps with $2^{-n}$.
+# **1.** In the plane, for one eye. A map that is known on a grid must be interpolated to be applied to itself. Here the
+# formula of $v$ is at hand, so the first map is simply applied $2^n$ times: what $n$ squarings make of it. A step of
+# length $2^{-n}$ has an error of the size $4^{-n}$, all $2^n$ steps together one of $2^{-n}$.
 
 
 # %%

@@ -64,16 +64,16 @@ def features(pixels: np.ndarray) -> np.ndarray:
 
 def synthetic(n: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Features (n, 136) and coefficients (n, c) of random faces."""
-    C = np.zeros((n, len(basis)))
-    C[:, : len(model.identity)] = [model.sample(rng, sigma=0.7) for _ in range(n)]
-    for row in C:
+    faces = np.zeros((n, len(basis)))
+    faces[:, : len(model.identity)] = [model.sample(rng, sigma=0.7) for _ in range(n)]
+    for row in faces:
         row[len(model.identity) + rng.choice(named, 4, replace=False)] = rng.uniform(0, 0.8, 4)
-    points = centre + np.tensordot(C, basis, axes=1)
+    points = centre + np.tensordot(faces, basis, axes=1)
     pixels = np.empty((n, 68, 2))
     for k in range(n):
         camera = ScaledOrthographicCamera.look(rng.uniform(-35, 35), rng.uniform(-15, 15))
         pixels[k] = camera.project(points[k]) + rng.normal(0, 0.015 * 90 * camera.scale, (68, 2))  # 1.5 % of 90 mm
-    return features(pixels), C
+    return features(pixels), faces
 
 
 X, Y = synthetic(2000, np.random.default_rng(0))
@@ -246,8 +246,8 @@ print("refined fits end so many mm from the plain one:", {name: round(mm, 2) for
 #
 # ## 5. A small network
 #
-# A network replaces $xW + b$ by, for example, $\tanh(xW_1 + b_1)\,W_2 + b_2$, whose minimum has no formula: one goes
-# downhill. toongeo need not know its library: the network hides behind the same call. Without torch this cell only
+# A network adds something bent to $xW + b$, for example $\tanh(xW_1 + b_1)\,W_2 + b_2$. Its minimum has no formula: one
+# goes downhill. toongeo need not know its library: the network hides behind the same call. Without torch this cell only
 # says so.
 
 
@@ -270,7 +270,7 @@ class Network:
 
 
 def trained_network(width: int = 64, steps: int = 400):
-    """Two layers, started at random, that learn what is left of the ridge regression; Adam on all faces at once."""
+    """Ridge regression, and two layers that learn what is left of it; Adam on all faces at once."""
     torch.manual_seed(0)
     torch.set_num_threads(1)
 
@@ -284,6 +284,8 @@ def trained_network(width: int = 64, steps: int = 400):
             with torch.no_grad():
                 self.linear.weight.copy_(torch.tensor(W.T))
                 self.linear.bias.copy_(torch.tensor(offset))
+                self.bent[2].weight.zero_()  # so that it begins as the ridge regression
+                self.bent[2].bias.zero_()
 
         def forward(self, x):
             return self.linear(x) + self.bent(x)
@@ -342,17 +344,17 @@ def experiment(noise: float, turn: float) -> float:
     sets = []
     for n, seed in ((2000, 3), (300, 4)):
         rng = np.random.default_rng(seed)
-        C = np.zeros((n, len(basis)))
-        C[:, : len(model.identity)] = [model.sample(rng, sigma=0.7) for _ in range(n)]
-        for row in C:
+        faces = np.zeros((n, len(basis)))
+        faces[:, : len(model.identity)] = [model.sample(rng, sigma=0.7) for _ in range(n)]
+        for row in faces:
             row[len(model.identity) + rng.choice(named, 4, replace=False)] = rng.uniform(0, 0.8, 4)
-        points = centre + np.tensordot(C, basis, axes=1)
+        points = centre + np.tensordot(faces, basis, axes=1)
         views = [
             ScaledOrthographicCamera.look(turn * rng.uniform(-35, 35), turn * rng.uniform(-15, 15)) for _ in range(n)
         ]
         pixels = np.array([view.project(p) for view, p in zip(views, points, strict=True)])
         pixels += rng.normal(0, 0.015 * 90 * views[0].scale, pixels.shape) * noise
-        sets.append((features(pixels), C))
+        sets.append((features(pixels), faces))
     (A, B), (A_test, B_test) = sets
     return min(error_mm(A_test @ V + b, B_test) for V, b in (ridge(A, B, value) for value in lams[::2]))
 
