@@ -32,7 +32,7 @@ extensions = [
 ]
 
 root_doc = "index"
-exclude_patterns = ["_build", "_ext", "figures", "Thumbs.db", "**/.ipynb_checkpoints"]
+exclude_patterns = ["_build", "_ext", "figures", "project/plots.md", "**/.ipynb_checkpoints"]
 templates_path = ["_templates"]
 language = "en"
 nitpicky = True

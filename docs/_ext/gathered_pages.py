@@ -45,4 +45,4 @@ def _relink(app, docname, source) -> None:
 def setup(app):
     app.connect("builder-inited", gathered_pages)
     app.connect("source-read", _relink)
-    return {"parallel_read_safe": True}
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

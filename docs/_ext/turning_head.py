@@ -20,4 +20,4 @@ def turning_head(app=None) -> None:
 
 def setup(app):
     app.connect("builder-inited", turning_head)
-    return {"parallel_read_safe": True}
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
