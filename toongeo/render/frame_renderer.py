@@ -53,7 +53,7 @@ class FrameRenderer:
 
     Examples
     --------
-    >>> from toongeo.render import ScaledOrthographicCamera
+    >>> from toongeo.render import FrameRenderer, ScaledOrthographicCamera, Surface
     >>> triangle = Surface([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]], colours=np.eye(3))
     >>> renderer = FrameRenderer([triangle], ScaledOrthographicCamera.look(size=32, extent=20.0), 32)
     >>> here, there = (renderer.frame([triangle.vertices + [x, 0, 0]]) for x in (0.0, 5.0))

@@ -29,6 +29,14 @@ class Fragments:
         Row of the face that is nearest at the pixel centre, -1 where there is none.
     barycentrics : ndarray of float32, shape (height, width, 3)
         Weights of that face's three corners, >= 0 with sum 1; all 0 where there is no face.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from toongeo.render import Fragments
+    >>> nothing = Fragments(np.full((4, 6), -1, dtype=np.int32), np.zeros((4, 6, 3), dtype=np.float32))
+    >>> bool((nothing.face_ids == -1).all())
+    True
     """
 
     face_ids: NDArray[np.int32]
