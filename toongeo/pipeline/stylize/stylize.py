@@ -18,7 +18,7 @@ from toongeo.pipeline.parse.find_hair import seen_hair
 from toongeo.pipeline.stylize.appearance.head_light import HeadLight, head_light
 from toongeo.pipeline.stylize.appearance.pixels import placed_in, sampled
 from toongeo.pipeline.stylize.appearance.subject import Subject, subject_of, working_factor
-from toongeo.pipeline.stylize.coloured_drawing import coloured_drawing, surroundings
+from toongeo.pipeline.stylize.coloured_drawing import Backdrop, coloured_drawing, surroundings
 from toongeo.pipeline.stylize.exaggerated import exaggerated
 from toongeo.pipeline.stylize.face_frame import face_frame
 from toongeo.pipeline.stylize.ink_drawing import ink_drawing
@@ -26,6 +26,7 @@ from toongeo.pipeline.stylize.style import STYLES, Style
 from toongeo.pipeline.stylize.style_rules import style_rules
 from toongeo.pipeline.stylize.velocity_warp import VelocityWarp, velocity_warp
 from toongeo.pipeline.texture import find_irises
+from toongeo.pipeline.texture.find_rims import find_rims
 from toongeo.protocols import Stylized
 
 __all__ = ["check_strength", "check_style", "reduced_fit", "stylize", "subject_for"]
@@ -35,7 +36,9 @@ _STRONGEST = 2.0
 # Passes and colour tolerance (Lab) of the abstraction: paintings keep more.
 _PASSES, _TOLERANCE = 3, 9.0
 _PAINTED_PASSES, _PAINTED_TOLERANCE = 2, 7.0
-_HAIR_VIEW = 125.0  # px of the head in which hair is looked for: it guides the cut of the skin, and colours
+# px of the head in which hair is looked for: it guides the cut of the skin, and colours. At 125 the white hair of
+# einstein is not found.
+_HAIR_VIEW = 150.0
 _DOUBTFUL = 0.75  # how much a mask of hair that is not trusted says
 
 
@@ -146,6 +149,7 @@ def subject_for(photo: Bytes, points: Floats, fit: FaceFit, warp: VelocityWarp, 
     """What is measured on a photograph (H, W, 3) whose face has landmarks (68, 2) px and a fit, after the warp."""
     shape = (photo.shape[0], photo.shape[1])
     moved, irises = warp.points(points), find_irises(photo, points)
+    rims = find_rims(photo, points)
     size, before = face_frame(moved).size, face_frame(points).size
     factor = working_factor(shape, size)
     small = _reduced(photo, min(factor, 1.0))
@@ -164,9 +168,10 @@ def subject_for(photo: Bytes, points: Floats, fit: FaceFit, warp: VelocityWarp, 
         taken(seen),
         moved,
         size,
-        HeadLight(*(taken(plane) for plane in (light.head, light.face, light.shade)), light.from_right),
+        HeadLight(taken(light.head), taken(light.face), taken(light.shade), light.from_right),
         taken(hair),
         (right, left),
+        None if rims is None else replace(rims, lines=tuple(warp.points(line) for line in rims.lines)),
         passes=_PAINTED_PASSES if painted else _PASSES,
         tolerance=_PAINTED_TOLERANCE if painted else _TOLERANCE,
     )
@@ -194,7 +199,7 @@ def _hair(photo: Bytes, points: Floats, fit: FaceFit) -> Singles:
 def _drawn(
     subject: Subject,
     look: Style,
-    backdrop: Singles | None,
+    backdrop: Backdrop | None,
     below: np.ndarray | None,
     strength: float,
     shape: tuple[int, ...],

@@ -22,7 +22,13 @@ _SOFT = 0.05  # face sizes: no facet shows, and no wrinkle
 _WEAK = 0.25  # log2: light that varies less over the face than this is even
 _X = 3  # row of the harmonic that grows to the right of the camera
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear sRGB
-_FEATURES = ((range(36, 42), 0.05), (range(42, 48), 0.05), (range(48, 60), 0.04), (range(17, 22), 0.04), (range(22, 27), 0.04))
+_FEATURES = (
+    (range(36, 42), 0.05),
+    (range(42, 48), 0.05),
+    (range(48, 60), 0.04),
+    (range(17, 22), 0.04),
+    (range(22, 27), 0.04),
+)
 _ROUNDS = 6  # of robust weights: they no longer change
 _OFF = 0.25  # of the luminance: so far from the model a pixel counts a half. Beards, glasses, highlights are farther
 _RIDGE = 0.003  # on all but the ambient harmonic, which the visible half of a face hardly tells apart; of the trace
