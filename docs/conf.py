@@ -36,7 +36,6 @@ exclude_patterns = ["_build", "_ext", "figures", "project/plots.md", "**/.ipynb_
 templates_path = ["_templates"]
 language = "en"
 nitpicky = True
-suppress_warnings = ["myst.header"]  # licences are quoted as they are, from any level of heading
 
 # Prose. Notebooks carry their outputs; nothing is run here.
 nb_execution_mode = "off"
