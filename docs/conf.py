@@ -20,7 +20,6 @@ version = release = toongeo.__version__
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.mathjax",
     "numpydoc",
     "myst_nb",
     "sphinx_design",
@@ -29,6 +28,7 @@ extensions = [
     "turning_head",
     "result_plots",
     "linked_names",
+    "mathml",
 ]
 
 root_doc = "index"
@@ -55,6 +55,7 @@ add_module_names = False
 python_use_unqualified_type_names = True
 
 html_theme = "pydata_sphinx_theme"
+html_math_renderer = "mathml"
 html_title = "toongeo"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]

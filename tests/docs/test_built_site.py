@@ -85,15 +85,13 @@ def test_main_pages_are_accessible(site, browse, serve, theme, width):
     pages = [name for name in MAIN if (site / f"{name}.html").is_file()]
     steps = [{"size": [width, 844 if width < 500 else 800]}, {"run": f"localStorage.setItem('theme', '{theme}')"}]
     for name in pages:
-        steps += [{"run": f"location.href = '/{name}.html'"}, {"wait": f"location.pathname === '/{name}.html'"}]
-        steps += [{"wait": "document.readyState === 'complete'"}, {"axe": AXE}]
+        steps += [{"open": f"{name}.html"}, {"axe": AXE}]
         steps += [{"run": "document.documentElement.scrollWidth - innerWidth"}]
         steps += [{"run": "document.documentElement.dataset.theme"}, {"page": f"{name.replace('/', '_')}.png"}]
     with serve(site) as home:
         told, _ = browse(f"{home}/index.html", steps)
     results = told["results"][1:]
-    for k, name in enumerate(pages):
-        _, violations, over, shown = results[4 * k : 4 * k + 4]
+    for name, violations, over, shown in zip(pages, *(results[k::3] for k in range(3)), strict=True):
         assert violations == [], f"{name}, {theme}, {width} px"
         assert over <= 0, f"{name} is {over} px wider than {width} px"
         assert shown == theme
