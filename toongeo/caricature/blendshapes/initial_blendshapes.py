@@ -18,7 +18,7 @@ from toongeo.caricature.blendshapes.landmark_mapper import PartMapper
 from toongeo.caricature.blendshapes.sparse_expression import sparse_expression
 from toongeo.caricature.caricature_fit import CaricatureFit
 from toongeo.caricature.caricature_options import CaricatureOptions
-from toongeo.caricature.fit_caricature import refitted_skin
+from toongeo.caricature.refitted_skin import refitted_skin
 from toongeo.caricature.space.deformation_representation import deformation_representation
 from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.model.anatomy.landmark_basis import landmark_basis

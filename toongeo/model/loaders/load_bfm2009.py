@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.model.loaders.files.read_mat import mat_names, read_mat
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
 
 __all__ = ["is_bfm2009", "load_bfm2009"]
 
@@ -51,7 +51,7 @@ def load_bfm2009(path: str | Path, landmarks: NDArray[np.int64] | None = None) -
     "Accurate 3D face reconstruction with weakly-supervised learning", CVPRW 2019.
     """
     path = Path(path)
-    with refusing(path, "a Basel Face Model of 2009"):
+    with promise(path, "a Basel Face Model of 2009", alone=True):
         z: dict[str, Any] = read_mat(path, (*_ORIGINAL, *_DEEP3D, *_COLOURS[0], *_COLOURS[1], "keypoints", "model"))
         if isinstance(z.get("model"), dict):
             return _face3d(z["model"], landmarks)

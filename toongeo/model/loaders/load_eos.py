@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.model.ibug68 import PARTS
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.outline_paths import outline_landmarks, outline_paths
 from toongeo.reading.check_file import file_bytes
+from toongeo.reading.promise import promise
 
 __all__ = ["load_eos"]
 
@@ -71,19 +71,19 @@ def load_eos(
     ...
     ValueError: other.bin: expected a binary file of eos, it ends at byte 3
     """
-    with refusing(Path(shape), "a shape model of eos"):
+    with promise(Path(shape), "a shape model of eos", "shape", alone=True):
         mean, modes, faces, uv = _shape_model(_Reader(Path(shape)))
-    with refusing(Path(landmarks), "a table of landmarks of eos"):
+    with promise(Path(landmarks), "a table of landmarks of eos", "landmarks", alone=True):
         table = _landmark_table(Path(landmarks), len(mean))
     blendshapes: dict[str, NDArray[np.float32]] = {}
     if expression is not None:
-        with refusing(Path(expression), "blendshapes of eos"):
+        with promise(Path(expression), "blendshapes of eos", "expression", alone=True):
             blendshapes = _blendshapes(_Reader(Path(expression)), len(mean))
     regions = {}
     if contours is not None:
-        with refusing(Path(contours), "contours of eos"):
+        with promise(Path(contours), "contours of eos", "contours", alone=True):
             regions = _contours(Path(contours), len(mean))
-    with refusing(Path(shape), "a shape model of eos"):
+    with promise(Path(shape), "a shape model of eos", "shape", alone=True):
         points = np.zeros(68, np.int64)
         points[list(table)] = list(table.values())
         uv_parts = {"uv": uv, "uv_faces": faces} if len(uv) else {}

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.loaders.files.read_npz import npz_names, read_npz
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
+from toongeo.reading.read_npz import npz_names, read_npz
 
 __all__ = ["ict_model", "is_ict_facekit", "load_ict_facekit", "own_name", "packed_ict"]
 
@@ -61,8 +61,8 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
     ValueError: other.npz: expected the arrays ...
     """
     path = Path(path)
-    z: dict[str, Any] = dict(read_npz(path, _KEYS))
-    with refusing(path, "an archive of ICT-FaceKit"):
+    z: dict[str, Any] = dict(read_npz(path, _KEYS, expected="an archive of ICT-FaceKit"))
+    with promise(path, "an archive of ICT-FaceKit", alone=True):
         for kind in ("identity", "expression"):
             integers, scale = z.pop(f"{kind}_q"), z.pop(f"{kind}_scale")
             if integers.ndim != 3 or scale.shape != integers.shape[:1] or integers.shape[1:] != z["neutral"].shape:
