@@ -47,6 +47,10 @@ def load_eos(
         ``sfm_model_contours.json``: vertices of the right and the left outline, on which eos looks for the nearest.
         They are regions here, ``contour_right`` and ``contour_left``.
 
+    Returns
+    -------
+    MorphableModel
+
     Raises
     ------
     ValueError
@@ -55,6 +59,17 @@ def load_eos(
     References
     ----------
     P. Huber et al., "A multiresolution 3D morphable face model and fitting framework", VISAPP 2016.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.load_eos("sfm_shape_3448.bin", "ibug_to_sfm.txt")  # doctest: +SKIP
+    >>> from pathlib import Path
+    >>> size = Path("other.bin").write_bytes(bytes(3))
+    >>> tg.load_eos("other.bin", "other.txt")
+    Traceback (most recent call last):
+    ...
+    ValueError: other.bin: expected a binary file of eos, it ends at byte 3
     """
     with promise(Path(shape), "a shape model of eos", "shape", alone=True):
         mean, modes, faces, uv = _shape_model(_Reader(Path(shape)))

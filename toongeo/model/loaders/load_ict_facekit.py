@@ -36,6 +36,10 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
         ``identity_q (k, v, 3)`` and ``expression_q (e, v, 3)`` as integers with their ``*_scale`` (k,) and (e,),
         ``expression_names`` and ``landmarks68``.
 
+    Returns
+    -------
+    MorphableModel
+
     Raises
     ------
     ValueError
@@ -44,6 +48,17 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
     References
     ----------
     R. Li et al., "Learning formation of physically-based face attributes", CVPR 2020 (ICT-FaceKit, MIT license).
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.load_ict_facekit("ict.npz")  # doctest: +SKIP
+    >>> import numpy as np
+    >>> np.savez("other.npz", neutral=np.zeros((4, 3)))
+    >>> tg.load_ict_facekit("other.npz")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    ValueError: other.npz: expected the arrays ...
     """
     path = Path(path)
     z: dict[str, Any] = dict(read_npz(path, _KEYS, expected="an archive of ICT-FaceKit"))

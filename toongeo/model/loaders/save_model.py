@@ -51,6 +51,13 @@ def save_model(model: MorphableModel, path: str | Path) -> None:
         If the name does not end in ``.npz``.
     OSError
         If it cannot be written; what was there before stays.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.save_model(tg.default_model(), "head.npz")
+    >>> bool((tg.load_model("head.npz").mean == tg.default_model().mean).all())
+    True
     """
     path = Path(path)
     if path.suffix != ".npz":

@@ -8,12 +8,11 @@ from toongeo.pipeline.stylize.appearance.brush_marks import brush_marks
 from toongeo.pipeline.stylize.appearance.palette import in_palette, palette_of
 from toongeo.pipeline.stylize.appearance.pixels import antialiased, blurred, enlarged, rgb_of, soft_step
 from toongeo.pipeline.stylize.appearance.skin_tones import toned_skin
-from toongeo.pipeline.stylize.appearance.steep_edges import border_line
 from toongeo.pipeline.stylize.appearance.subject import Subject
 from toongeo.pipeline.stylize.strokes.canvas import Canvas
 from toongeo.pipeline.stylize.strokes.eyes import draw_eyes
 from toongeo.pipeline.stylize.strokes.mouth import draw_mouth
-from toongeo.pipeline.stylize.strokes.outline import draw_brows, draw_jaw, draw_nose
+from toongeo.pipeline.stylize.strokes.outline import draw_brows, draw_jaw, draw_nose, skin_outline
 from toongeo.pipeline.stylize.strokes.pens import Pens, pens_of
 from toongeo.pipeline.stylize.strokes.spectacles import long_lines
 from toongeo.pipeline.stylize.style import Style
@@ -35,17 +34,19 @@ _BLUSH_RADIUS, _BLUSH = 0.11, (-4.0, 22.0, 5.0)
 
 
 def coloured_drawing(subject: Subject, style: Style, backdrop: Singles) -> Singles:
-    """RGB (h, w, 3) in 0..255; ``backdrop`` is what :func:`surroundings` gives for the style."""
-    skin = subject.full(subject.skin.drawn)
-    cover = soft_step(skin - 0.5, _SOFT_CUT) if style.palette else skin
-    lab = backdrop.copy()
+    """RGB (h, w, 3) in 0..255; ``backdrop`` is what :func:`surroundings` gives for the style, CIELAB."""
+    box, skin = subject.skin_box, subject.skin_cover
+    lab = backdrop[box].copy()
+    cover = soft_step(skin[box] - 0.5, _SOFT_CUT) if style.palette else skin[box]
     lab += cover[..., None] * (toned_skin(subject, style) - lab)
     if style.blush > 0 and not subject.grey:
         _add_blush(lab, subject, cover, style.blush)
+    rgb = rgb_of(backdrop)
+    rgb[box] = rgb_of(lab)
     pens = pens_of(subject, style)
-    canvas = Canvas(rgb_of(lab))
+    canvas = Canvas(rgb)
     if style.outlines > 0:
-        _draw_outlines(canvas, subject, skin, style, pens)
+        _draw_outlines(canvas, subject, style, pens)
     draw_mouth(canvas, subject, style, pens)
     draw_nose(canvas, subject, style, pens)
     draw_jaw(canvas, subject, pens, visible_skin(subject))
@@ -70,30 +71,25 @@ def surroundings(subject: Subject, style: Style) -> Singles:
         lab = subject.lab.copy()
         lab[..., 0] = _levelled(subject.lab[..., 0], style.levels, _SOFT_LEVEL_SLOPE)
     else:
-        palette, distances = _palette_distances(subject, style.palette)
-        lab = in_palette(np.stack([enlarged(plane, subject.lab.shape) for plane in distances]), palette)
+        lab = _in_few_colours(subject, style.palette)
         levels = _levelled(subject.lab[..., 0], style.levels, _LEVEL_SLOPE)
         lab[..., 0] += np.float32(_OWN_LIGHTNESS) * (levels - lab[..., 0])
     lab[..., 1:] *= np.float32(style.chroma)
     return lab
 
 
-def _palette_distances(subject: Subject, count: int) -> tuple[Singles, list[Singles]]:
-    """Palette (k, 3), and squared distances k (h, w) to it in the reduced picture; hair has colours of its own."""
+def _in_few_colours(subject: Subject, count: int) -> Singles:
+    """The drawing (h, w, 3) in the colours of a palette; hair has colours of its own."""
     hair, other = subject.hair, 1 - np.maximum(subject.hair, _SKIN_WEIGHT * subject.skin.drawn)
-    smooth = np.asarray(cv2.medianBlur(subject.small, 5), np.float32)  # no specks: 5 px are 0.04 face sizes
+    smooth = np.asarray(cv2.medianBlur(subject.small, 5), np.float32)  # no specks: 5 px are 0.05 face sizes
     hairy = round(_HAIR_COLOURS * count) if hair.mean() > _HAIRY * subject.skin.drawn.mean() else 0
     palette = palette_of(smooth, other, count - hairy)
-    barred = [hair if hairy else np.zeros_like(hair)] * len(palette)
+    barred = np.full(len(palette), _ELSEWHERE if hairy else 0.0)
     if hairy:
         own = palette_of(smooth, hair, hairy)
-        palette, barred = np.concatenate([palette, own]), barred + [1 - hair] * len(own)
-    sigma = 0.006 * subject.size * subject.factor
-    distances = []
-    for colour, bar in zip(palette, barred, strict=True):
-        difference = smooth - colour
-        distances.append(blurred(np.einsum("...i,...i", difference, difference) + np.float32(_ELSEWHERE) * bar, sigma))
-    return palette, distances
+        palette, barred = np.concatenate([palette, own]), np.append(barred, np.full(len(own), -_ELSEWHERE))
+    fields = blurred(np.dstack([smooth, hair]), 0.006 * subject.size * subject.factor)
+    return in_palette(enlarged(fields, subject.shape), palette, barred.astype(np.float32))
 
 
 def _levelled(lightness: Singles, count: int, slope: float) -> Singles:
@@ -106,9 +102,10 @@ def _levelled(lightness: Singles, count: int, slope: float) -> Singles:
 
 
 def _add_blush(lab: Singles, subject: Subject, cover: Singles, strength: float) -> None:
-    radius = _BLUSH_RADIUS * subject.size
+    """Into the skin's box of a drawing, CIELAB."""
+    radius, start = _BLUSH_RADIUS * subject.size, [part.start for part in subject.skin_box[::-1]]
     for a, b, c, d in _CHEEKS:
-        middle = 0.8 * subject.landmarks[[a, b]].mean(axis=0) + 0.2 * subject.landmarks[[c, d]][1]
+        middle = 0.8 * subject.landmarks[[a, b]].mean(axis=0) + 0.2 * subject.landmarks[[c, d]][1] - start
         low = np.maximum(np.floor(middle - 4 * radius).astype(int), 0)
         high = np.maximum(np.ceil(middle + 4 * radius).astype(int), 0)
         box = np.s_[low[1] : high[1], low[0] : high[0]]
@@ -120,15 +117,12 @@ def _add_blush(lab: Singles, subject: Subject, cover: Singles, strength: float) 
             part += np.float32(strength) * blob[..., None] * np.array(_BLUSH, np.float32)
 
 
-def _draw_outlines(canvas: Canvas, subject: Subject, skin: Singles, style: Style, pens: Pens) -> None:
+def _draw_outlines(canvas: Canvas, subject: Subject, style: Style, pens: Pens) -> None:
     """Lines outside the face where the picture has them, and the outline of the skin."""
-    response = np.clip(enlarged(subject.lines, subject.picture.shape), -50, 50)
-    hull = subject.full(subject.skin.hull)
-    lines = antialiased(response - _LEAST_LINE, _LINE_EDGE) * (1 - _ON_FACE * hull * (skin > 0.3))
+    skin, hull = subject.skin_cover, subject.hull
+    lines = antialiased(subject.response - _LEAST_LINE, _LINE_EDGE) * (1 - _ON_FACE * hull * (skin > 0.3))
     canvas.cover(lines, pens.line, 0.85 * style.outlines)
-    wide = np.clip(blurred(hull, 0.02 * subject.size) * 1.6, 0, 1)
-    border = border_line(blurred(skin, 0.008 * subject.size), 0.30 * pens.width) * (1 - wide)
-    canvas.cover(border, pens.line, 0.8)
+    canvas.cover(skin_outline(subject, 0.30 * pens.width), pens.line, 0.8)
 
 
 def _draw_long_lines(canvas: Canvas, subject: Subject, pens: Pens) -> None:
@@ -136,5 +130,5 @@ def _draw_long_lines(canvas: Canvas, subject: Subject, pens: Pens) -> None:
     for response, paint in ((subject.lines, pens.line), (-subject.lines, rgb_of(subject.lab))):
         response = long_lines(response, subject, _LEAST_LONG_LINE)
         if response.any():
-            cover = antialiased(enlarged(response, subject.picture.shape) - _LEAST_LONG_LINE, _LINE_EDGE)
+            cover = antialiased(enlarged(response, subject.shape) - _LEAST_LONG_LINE, _LINE_EDGE)
             canvas.cover(cover, paint, 0.85)

@@ -21,6 +21,7 @@ _INNER, _FEATURE, _NEAR, _NECK = 0.04, 0.05, 0.10, 0.45
 _STRIP = 0.05  # above the brows: farther up, fringes would be learned as skin
 _SOCKETS = 0.03  # around eyes and brows, which are drawn anew on skin
 _HOLE = 0.015  # squares of face sizes: smaller holes are drawn over
+_AROUND = 0.5  # of the surroundings, which say what is not skin
 _TINY = 0.02  # thinner bridges and specks are none
 _BIN = (5.0, 4.0, 4.0)  # Lab, of the colour models
 _EVIDENCE = 4.0  # bound of their log-odds
@@ -87,6 +88,27 @@ def skin_region(lab: Singles, landmarks: Floats, size: float, light: HeadLight, 
     hair : (h, w) float32 in [0, 1]
         What is known to be hair or hat.
     """
+    box = _box(lab.shape, landmarks, size, light.head)
+    corner = np.array([part.start for part in box[::-1]], float)
+    near = HeadLight(light.head[box], light.face[box], light.shade[box], light.from_right)
+    region = _region(np.ascontiguousarray(lab[box]), landmarks - corner, size, near, hair[box])
+    planes = [np.zeros(lab.shape[:2], np.float32) for _ in range(3)]
+    for plane, part in zip(planes, (region.drawn, region.seen, region.hull), strict=True):
+        plane[box] = part
+    return SkinRegion(*planes, region.median, region.lit)
+
+
+def _box(shape: tuple[int, ...], landmarks: Floats, size: float, head: Singles) -> tuple[slice, slice]:
+    """Rows and columns around head and neck, with enough of what surrounds them for its colours to be known."""
+    x, y, width, height = cv2.boundingRect((head > 0.5).astype(np.uint8))
+    corners = np.vstack([landmarks, [[x, y], [x + width, y + height]] if width else landmarks[:1]])
+    low = np.clip(np.floor(corners.min(axis=0) - _AROUND * size), 0, None).astype(int)
+    high = np.ceil(corners.max(axis=0) + _AROUND * size + [1, _NECK * size]).astype(int)
+    high = np.maximum(np.minimum(high, shape[1::-1]), low + 1)
+    return np.s_[low[1] : high[1], low[0] : high[0]]
+
+
+def _region(lab: Singles, landmarks: Floats, size: float, light: HeadLight, hair: Singles) -> SkinRegion:
     hull = _hull(lab.shape, landmarks)
     inner = _eroded(hull, _INNER * size)
     for feature in _FEATURES:

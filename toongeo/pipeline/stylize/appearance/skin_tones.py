@@ -37,7 +37,7 @@ def skin_tone(subject: Subject, style: Style) -> Singles:
 
 
 def toned_skin(subject: Subject, style: Style) -> Singles:
-    """Colours (h, w, 3) of the skin, CIELAB."""
+    """Colours (h, w, 3) of the skin's box, CIELAB."""
     tone = skin_tone(subject, style)
     shading = _shading(subject, style)
     neutral = np.array([1, 0, 0] if subject.grey else [1, 1, 1], np.float32)
@@ -45,16 +45,17 @@ def toned_skin(subject: Subject, style: Style) -> Singles:
     flat += shading.bright[..., None] * (neutral * np.array(style.light, np.float32))
     if style.tones > 3:
         flat[..., 0] += 5 * np.clip(shading.mix, -1.5, 1.5)
-    own = subject.lab * np.array([1, style.chroma, style.chroma], np.float32)
+    own = subject.lab[subject.skin_box] * np.array([1, style.chroma, style.chroma], np.float32)
     own[..., 0] += tone[0] - subject.skin.lit[0]
     return np.asarray(own + np.float32(style.flatness) * (flat - own))
 
 
 def _shading(subject: Subject, style: Style) -> _Shading:
     """Covers of the dark and the bright tone, and the shading that they come from."""
-    photo = np.clip((subject.lab[..., 0] - subject.skin.median[0]) / _PHOTO_SPREAD, -1.5, 1.2)
+    box = subject.skin_box
+    photo = np.clip((subject.lab[box][..., 0] - subject.skin.median[0]) / _PHOTO_SPREAD, -1.5, 1.2)
     share = 0.0 if style.tones <= 2 else (0.35 + 0.65 * style.shading) * (1.0 if style.shading else 0.6)
-    mix = (1 - 0.5 * style.shading) * enlarged(subject.light.shade, subject.lab.shape) + np.float32(share) * photo
+    mix = (1 - 0.5 * style.shading) * enlarged(subject.light.shade, subject.shape)[box] + np.float32(share) * photo
     mix = np.asarray(mix, np.float32)
     if style.tones > 3:
         return _Shading(soft_step(np.float32(_DARK) - mix, _SOFT), soft_step(mix - np.float32(_BRIGHT), _SOFT), mix)
