@@ -7,6 +7,7 @@ import numpy as np
 
 from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only, restored
+from toongeo.protocols.face_parse import HairMask
 
 __all__ = ["PictureWarp", "Stylized", "Stylizer"]
 
@@ -42,12 +43,15 @@ class Stylized:
     texture : (H, W, 3) uint8 RGB
         The variant that an avatar is textured with: without light, which the avatar has of its own, and without lines
         that would be wrong once it moves.
+    hair : HairMask, optional
+        The hair of the photograph, in its frame, if the stylizer has looked for it: it need not be found twice.
     """
 
     img: np.ndarray
     landmarks: np.ndarray
     warp: PictureWarp
     texture: np.ndarray
+    hair: HairMask | None = None
 
     __repr__ = brief_repr
     __setstate__ = restored
