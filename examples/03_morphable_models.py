@@ -258,8 +258,9 @@ without = error_mm(told(sets["all but the jaw"], use_prior=False)[0])
 print(f"without the prior, from all but the jaw: {without:.0f} mm")
 
 # %% [markdown]
-# *Figure: A face coloured by how uncertain it still is, from violet (0 mm) to yellow (4 mm), four times: green all over
-# when nothing is known, violet around what was measured, and violet nearly everywhere when all inner landmarks were.*
+# *Figure: A face coloured by how uncertain it still is, from violet (0 mm) to yellow (4 mm), four times: yellow and
+# green when nothing is known, violet around what was measured, and violet nearly everywhere when all inner landmarks
+# were.*
 #
 # Nine points on the nose also tell something about the cheeks: faces hang together. And without the prior the same 51
 # points give a
