@@ -196,6 +196,9 @@ for name, light in found.items():
 print(f"the worst of 108 numbers is off by {light_error:.2f}")
 
 # %% [markdown]
+# The light comes back, but not to the last digit: the renderer works out light at vertices and mixes it between them, a
+# picture has 256 steps, and the half of a face that is seen hardly tells some of the nine apart (exercise 1).
+#
 # ## Analysis, second part: shape
 #
 # Now the light is *not* known, and one number of the shape is not known either. For every value of it we can do the
@@ -205,8 +208,8 @@ print(f"the worst of 108 numbers is off by {light_error:.2f}")
 # \Big\| \frac{\rho_i}{\pi} E_L(n_i(\alpha)) - I\big(\Pi\, v_i(\alpha)\big) \Big\|^2 . \qquad (\text{Eq. 5}) $$
 #
 # Two things depend on the shape: the normals, and the place $\Pi v_i$ where the picture is read. The light is never
-# searched for; it is solved for inside of the loss. (This is called *variable projection*: it makes a search in 90
-# dimensions out of one in 117.)
+# searched for; it is solved for inside of the loss. (This is called *variable projection*. It takes 27 unknowns, nine
+# for each channel, out of the search.)
 #
 # We take the true person, change one mode of the shape by −2 to 2 standard deviations, and look at the loss.
 

@@ -270,8 +270,8 @@ show([frames["surprise"][CROP], kept_frame[CROP]], ["classical generator", "A = 
 print(f"mean difference in the region: {difference:.1f} of 255")
 
 # %% [markdown]
-# *Figure: The surprised man twice, with the classical generator and with one that keeps the old texture: both mouths are
-# open, and the first is darker inside.*
+# *Figure: The surprised man twice, with the classical generator and with one that keeps the old texture: both mouths
+# are open, and the first is darker inside.*
 
 # %%
 numbers: dict[str, float] = {
