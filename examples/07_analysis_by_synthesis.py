@@ -57,8 +57,8 @@ def show(pictures, titles, *, rows=1, side=2.2, **options):
 # $$ E(n) = \int L(\omega)\, \max(n \cdot \omega, 0)\, d\omega . $$
 #
 # The cosine blurs: details of the light do not show on a matt surface. So $L$ is written in functions on the sphere
-# that are ordered by detail, the *spherical harmonics* $Y_{lm}$, as a sound is written in frequencies. Of degree $l =
-# 0$ there is one (constant), of degree 1 three (the components of $n$), of degree 2 five (products of two of them). The
+# that are ordered by detail, the *spherical harmonics* $Y_{lm}$, as a sound is written in frequencies. Of degree 0
+# there is one (constant), of degree 1 three (the components of $n$), of degree 2 five (products of two of them). The
 # integral multiplies each by a number $A_l$ that depends on the degree only, and from degree 3 on next to nothing is
 # left (Ramamoorthi and Hanrahan 2001):
 #
