@@ -78,10 +78,10 @@ plt.show()
 # where the face is seen from the front and spread out.*
 #
 # A cell of the atlas is a *texel*. Which triangle does it lie in, and where? Drawing triangles into a grid and noting
-# that is *rasterising*, and the place is given by *barycentric coordinates*: three weights
-# $\lambda_1, \lambda_2, \lambda_3$ with sum 1, so that the texel is $\lambda_1 a + \lambda_2 b + \lambda_3 c$ of the triangle's corners in the
-# atlas. And now the trick: the same weights of the same corners *in space* are the point of the skin that the texel
-# stands for; the camera $\Pi$ says where the picture shows it (Eq. 12):
+# that is *rasterising*. The place in the triangle is given by *barycentric coordinates*: three weights
+# $\lambda_1, \lambda_2, \lambda_3$ with sum 1, so that the texel is $\lambda_1 a + \lambda_2 b + \lambda_3 c$ of the
+# triangle's corners in the atlas. And now the trick: the same weights of the same corners *in space* are the point of
+# the skin that the texel stands for; the camera $\Pi$ says where the picture shows it (Eq. 12):
 #
 # $$ p = \lambda_1 v_1 + \lambda_2 v_2 + \lambda_3 v_3, \qquad \text{pixel} = \Pi(p) . $$
 

@@ -196,7 +196,8 @@ plt.show()
 # them all fourth vertices, one a triangle. Each equation has a number in four of their columns, and 0 in the others.
 # That is a tall matrix $A$ that is nearly empty, and the transposed $Q_j$ of the source are its right side $B$:
 #
-# $$ \min_X \| A X - B \|^2, \qquad A:\ 3m \times (n + m), \quad X:\ (n + m) \times 3, \quad B:\ 3m \times 3 . $$
+# $$ \min_X \| A X - B \|^2, \qquad A \in \mathbb{R}^{3m \times (n + m)}, \quad X \in \mathbb{R}^{(n + m) \times 3},
+# \quad B \in \mathbb{R}^{3m \times 3} . $$
 #
 # Let us see $A$ for the smallest closed mesh, a tetrahedron: four vertices, four triangles. The loops say it slowly:
 # corner $k$ of triangle $j$ has the numbers of row $k$ of $K_j$; they go to the three rows of this triangle, and to the
