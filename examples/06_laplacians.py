@@ -168,9 +168,9 @@ print(f"bar: {len(bar)} vertices, {len(F_bar)} triangles; L has {L_bar.nnz} numb
 #
 # $$ E(x) = \tfrac12 \int \lVert \nabla x \rVert^2 . \tag{5} $$
 #
-# (Least restless of all is a constant, then a gentle slope; a function with a crease pays for it. If $x$ is a
-# coordinate of the surface itself, the energy is that of a soap film, and its gradient, as we shall see, points where
-# the film would shrink: where the surface is bent.)
+# (A constant costs nothing, a gentle slope little, ripples much. If $x$ is a coordinate of the surface itself, the
+# energy is that of a soap film, and its gradient says where the film pulls: nowhere on a flat piece, whatever its
+# triangles look like, and inwards where the surface is bent. That is what we want of a Laplacian coordinate.)
 #
 # Inside one triangle the slope is constant, so the integral is easy. Take the triangle with corners $i, j, o$. The hat
 # function of corner $i$ is 1 there and 0 at the others: it rises from the opposite edge, over the triangle's height
@@ -193,33 +193,29 @@ print(f"bar: {len(bar)} vertices, {len(F_bar)} triangles; L has {L_bar.nnz} numb
 # Many books have the other sign; always look.
 
 # %%
-o, i, j = np.array([[0.9, 1.5], [0.0, 0.0], [2.4, 0.0]])  # a triangle, to look at
-foot = o + (i - o) * ((j - o) @ (i - o)) / ((i - o) @ (i - o))  # of the height of j, on the side from o to i
+i, j, o = np.array([[0.0, 0.0], [2.4, 0.0], [0.9, 1.5]])  # a triangle, to look at
 fig, axis = plt.subplots(figsize=(4.6, 2.9))
 axis.plot(*np.array([i, j, o, i]).T, c="0.2")
-axis.plot(*np.array([j, foot]).T, ":", c="tab:blue")
-axis.annotate("$h_j$", (j + foot) / 2, xytext=(2, 5), textcoords="offset points", color="tab:blue")
-axis.plot([o[0], o[0]], [0, o[1]], ":", c="0.6")
-for place, name, shift in ((i, "i", (-10, -10)), (j, "j", (5, -10)), (o, "o", (-3, 5))):
+for place, name, shift in ((i, "i", (-10, -10)), (j, "j", (5, -10)), (o, "o", (-3, 5)), (o, "\\theta_o", (-4, -26))):
     axis.annotate(f"${name}$", place, xytext=shift, textcoords="offset points")
-axis.annotate(r"$\theta_o$", o, xytext=(-3, -26), textcoords="offset points")
-middle = (i + j + o) / 3
-for corner, foot_of, name, colour in ((j, foot, "j", "tab:blue"), (i, None, "i", "tab:red")):
-    if foot_of is None:
-        foot_of = o + (j - o) * ((i - o) @ (j - o)) / ((j - o) @ (j - o))
-    height = corner - foot_of
-    gradient = height / (height @ height)  # length 1 / h
-    axis.quiver(*middle, *gradient, color=colour, angles="xy", scale_units="xy", scale=1.2, width=0.008)
-    axis.annotate(
-        rf"$\nabla\varphi_{name}$", middle + gradient / 1.2, color=colour, textcoords="offset points", xytext=(2, 4)
-    )
+for corner, other, name, colour, shift in ((j, i, "j", "tab:blue", (4, 2)), (i, j, "i", "tab:red", (-26, 2))):
+    foot = o + (other - o) * ((corner - o) @ (other - o)) / (
+        (other - o) @ (other - o)
+    )  # of the height, on the far side
+    height = corner - foot
+    gradient = height / (height @ height)  # as long as 1 / h
+    axis.plot(*np.array([corner, foot]).T, ":", c=colour)
+    axis.annotate(f"$h_{name}$", foot, xytext=(-14 if name == "j" else 5, 2), textcoords="offset points", color=colour)
+    axis.quiver(*(i + j + o) / 3, *gradient, color=colour, angles="xy", scale_units="xy", scale=1.2, width=0.008)
+    tip = (i + j + o) / 3 + gradient / 1.2
+    axis.annotate(rf"$\nabla\varphi_{name}$", tip, xytext=shift, textcoords="offset points", color=colour)
 axis.set_aspect("equal")
 axis.axis("off")
 plt.tight_layout()
 plt.show()
 
 # %% [markdown]
-# *Figure: A triangle with corners i, j and o, the angle at o, the height of j as a dotted line, and arrows for the
+# *Figure: A triangle with corners i, j and o, the angle at o, two heights as dotted lines, and arrows for the
 # gradients of the hat functions of i and j, which point at these corners at right angles to the opposite sides.*
 
 
