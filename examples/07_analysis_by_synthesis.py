@@ -205,7 +205,7 @@ print(f"the worst of 108 numbers is off by {light_error:.2f}")
 # step above: find the light that is best for this shape, and see what is left,
 #
 # $$ L_{photo}(\alpha) = \min_{L} \frac{1}{N} \sum_i
-# \Big\| \frac{\rho_i}{\pi} E_L(n_i(\alpha)) - I\big(\Pi\, v_i(\alpha)\big) \Big\|^2 . \qquad (\text{Eq. 5}) $$
+# \left\| \frac{\rho_i}{\pi} E_L(n_i(\alpha)) - I\big(\Pi\, v_i(\alpha)\big) \right\|^2 . \qquad (\text{Eq. 5}) $$
 #
 # Two things depend on the shape: the normals, and the place $\Pi v_i$ where the picture is read. The light is never
 # searched for; it is solved for inside of the loss. (This is called *variable projection*. It takes 27 unknowns, nine

@@ -248,7 +248,7 @@ assert library_gap <= 1  # of 255: rounding
 
 # %%
 def animate(frames, description):
-    """Show frames as a film in a notebook; nothing where there is none."""
+    """Show frames once, as a film of less than five seconds, in a notebook; nothing where there is none."""
     try:
         from IPython import get_ipython
         from IPython.display import display
@@ -258,9 +258,9 @@ def animate(frames, description):
         return
     pictures = [Image.fromarray(frame).resize((196, 165)).quantize(48) for frame in frames]
     file = io.BytesIO()
-    pictures[0].save(file, "gif", save_all=True, append_images=pictures[1:], duration=120, loop=0)
+    pictures[0].save(file, "gif", save_all=True, append_images=pictures[1:], duration=180)
     data = {"image/gif": base64.b64encode(file.getvalue()).decode(), "text/plain": description}
-    display(data, raw=True)
+    display(data, raw=True, metadata={"image/gif": {"alt": description}})
 
 
 animate(

@@ -169,7 +169,7 @@ plt.show()
 # Compute $Q_j$ for every triangle $j$ of the source. They are the whole deformation. Now the target gets unknown new
 # vertices $x$, with gradients $Q'_j$ of its own, and these should be those of the source:
 #
-# $$ \min_x \sum_j \big\| Q_j - Q'_j(x) \big\|^2 . $$
+# $$ \min_x \sum_j \left\| Q_j - Q'_j(x) \right\|^2 . $$
 #
 # Why not just *set* $Q'_j = Q_j$? Because neighbouring triangles share vertices. If each did as it liked the surface
 # would fall apart; on the target the $Q_j$ do not fit together exactly, so they are met as well as possible, in the
