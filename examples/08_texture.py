@@ -243,7 +243,7 @@ assert library_gap <= 1  # of 255: rounding
 # The black patch is worth a look. The end of that brow reached the border of what was known, and diffusion does not
 # know that a line is a line: what touches the border is spread. The library lets only plain skin do that.
 #
-# The same as a film, where the notebook is shown by something that plays it.
+# The same as a film, which plays once, where the notebook is shown by something that plays it.
 
 
 # %%
@@ -258,7 +258,7 @@ def animate(frames, description):
         return
     pictures = [Image.fromarray(frame).resize((196, 165)).quantize(48) for frame in frames]
     file = io.BytesIO()
-    pictures[0].save(file, "gif", save_all=True, append_images=pictures[1:], duration=180)
+    pictures[0].save(file, "gif", save_all=True, append_images=pictures[1:], duration=160)
     data = {"image/gif": base64.b64encode(file.getvalue()).decode(), "text/plain": description}
     display(data, raw=True, metadata={"image/gif": {"alt": description}})
 
