@@ -730,7 +730,7 @@ print([f"{m:.4f} mm" for m in misses])
 
 
 # %%
-# 3. Where the plain bar shears it gets thin. Nothing in (8) or (10) speaks of volume either, but what is not sheared keeps it.
+# 3. Where the plain bar shears it gets thin. Nothing in (8) or (10) speaks of volume, but what is not sheared keeps it.
 def volume(V: np.ndarray) -> float:
     """Of the bar, by the formula of the exercise."""
     return float(np.linalg.det(V[F_bar]).sum() / 6)

@@ -12,7 +12,7 @@ from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.making.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.making.beyond import beyond_warnings
 from toongeo.avatar.making.rigged import mouth_warnings, posed, rigged
-from toongeo.avatar.making.styled import check_stylizer, styled
+from toongeo.avatar.making.styled import check_stylizer, drawn_hair, styled
 from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, detection_warnings, eye_warnings, landmark_errors, shape_warnings
 from toongeo.caricature.align_caricature import align_caricature
@@ -21,6 +21,7 @@ from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
     AlignedFace,
+    ClassicalParser,
     FaceFit,
     aim_eyes,
     align_face,
@@ -150,6 +151,17 @@ def make_avatar(
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, no face was found where none are
         given, method, rig, hair, style or noise is unknown, or a fit comes without landmarks or with what would change
         it.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> avatar = tg.make_avatar(img, landmarks, hair=False)
+    >>> avatar.vertices({"jawOpen": 0.6}).shape  # mm
+    (19057, 3)
+    >>> avatar.save("face.glb")
     """
     align = _ALIGNERS.get(method)
     if align is None:
@@ -195,7 +207,11 @@ def make_avatar(
         given = landmarks
         fit = fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
-    parse = parse_face(img, landmarks, fit, parser=plugin(parser, "parser"), hair_mask=drawn)
+    by: FaceParser | None = plugin(parser, "parser")
+    hair_seen = None if drawing is None else drawn_hair(drawing)
+    if by is None and drawn is None and hair_seen is not None:
+        by = ClassicalParser(hair_finder=lambda *_: hair_seen)  # it is not looked for twice
+    parse = parse_face(img, landmarks, fit, parser=by, hair_mask=drawn)
     if snap:
         clock.start("fit")
         landmarks = snap_eyes(landmarks, parse)

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.model.loaders.files.read_h5 import read_h5
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.eye_frame import EYE_DEPTH_MM
+from toongeo.reading.promise import promise
 
 __all__ = ["load_bfm2017"]
 
@@ -48,7 +48,7 @@ def load_bfm2017(path: str | Path, landmarks: NDArray[np.int64] | None = None) -
     """
     path = Path(path)
     z: dict[str, Any] = read_h5(path, (*_SHAPE, _CELLS), (*_MORE, _POINTS_OF_INTEREST))
-    with refusing(path, "a Basel Face Model of 2017 or 2019"):
+    with promise(path, "a Basel Face Model of 2017 or 2019", alone=True):
         cells = z[_CELLS]
         faces = cells if cells.ndim == 2 and cells.shape[1] == 3 else cells.T
         mean = _points(z["shape/model/mean"])

@@ -21,7 +21,7 @@ from toongeo.pipeline.parse.completed_landmarks import completed_landmarks
 from toongeo.pipeline.parse.doubtful_hair import doubtful_hair
 from toongeo.pipeline.parse.face_zones import FaceZones, face_zones
 from toongeo.pipeline.parse.find_hair import find_hair
-from toongeo.pipeline.parse.head_and_skin import HeadAndSkin, head_and_skin
+from toongeo.pipeline.parse.head_and_skin import HeadAndSkin, border_confidence, head_and_skin
 from toongeo.pipeline.parse.lids.find_lids import Lids, find_lids
 from toongeo.pipeline.parse.masks import filled, grown
 from toongeo.pipeline.parse.working_view import WorkingView, working_view
@@ -87,11 +87,12 @@ class ClassicalParser:
         zones = face_zones(view, points, face)
         with one_thread():
             cut = head_and_skin(view, zones)
+            confidence = border_confidence(view, cut)
         hair = self.hair_finder(img, given, face)
         mask = _in_view(view, hair.mask)
         mask = mask if hair.trusted else doubtful_hair(view, zones, cut, mask)
         labels = _labels(view, zones, cut, mask)
-        labels, confidence = _full_size(view, labels, cut.confidence, img.shape[:2])
+        labels, confidence = _full_size(view, labels, confidence, img.shape[:2])
         if hair.hat is not None:
             labels[hair.hat] = FaceLabel.HAT
         for side, label in (("right", FaceLabel.EYE_RIGHT), ("left", FaceLabel.EYE_LEFT)):

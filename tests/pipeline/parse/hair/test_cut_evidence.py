@@ -16,7 +16,7 @@ def ellipse(zones, across, up, breadth, height):
 
 def cuts(head, skin):
     none = np.zeros_like(head)
-    return HeadAndSkin(head, skin, np.where(skin, 0, 1).astype(np.float32), none, np.ones(head.shape, np.float32))
+    return HeadAndSkin(head, skin, np.where(skin, 0, 1).astype(np.float32), none)
 
 
 def test_a_head_that_is_larger_changes_nothing(zones):

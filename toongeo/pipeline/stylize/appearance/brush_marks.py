@@ -3,7 +3,7 @@
 import numpy as np
 
 from toongeo.arrays import Singles
-from toongeo.pipeline.stylize.appearance.edge_flow import mean_along
+from toongeo.pipeline.stylize.appearance.edge_flow import mean_along, streamlines
 from toongeo.pipeline.stylize.appearance.pixels import blurred, enlarged
 from toongeo.pipeline.stylize.appearance.subject import Subject
 
@@ -15,16 +15,18 @@ _DIAGONAL = (0.02, 0.012, 0.008)  # added to the tensor: where nothing has an ed
 _ON_FACE = 0.35  # of their strength elsewhere
 _CONTRAST = np.float32(0.030)  # of lightness for one standard deviation
 _SEED = 3
+_SAMPLES = 8  # to either side along a mark
 
 
 def brush_marks(subject: Subject, strength: float) -> Singles:
     """Factor (h, w, 1) of the colours: noise averaged along a smooth flow (line integral convolution)."""
     size = subject.size * subject.factor
     noise = np.random.default_rng(_SEED).standard_normal(subject.small.shape[:2]).astype(np.float32)
-    noise = mean_along(blurred(noise, _BREADTH * size), _smooth_flow(subject, size), _LENGTH * size, samples=8)
+    lines = streamlines(_smooth_flow(subject, size), _LENGTH * size, samples=_SAMPLES)
+    noise = mean_along(blurred(noise, _BREADTH * size), lines)
     noise /= np.maximum(noise.std(), np.float32(1e-6))
     noise *= 1 - (1 - _ON_FACE) * subject.skin.hull
-    marks = blurred(enlarged(noise, subject.picture.shape), 0.004 * subject.size)
+    marks = blurred(enlarged(noise, subject.shape), 0.004 * subject.size)
     return np.asarray((1 + np.float32(strength) * _CONTRAST * marks)[..., None])
 
 

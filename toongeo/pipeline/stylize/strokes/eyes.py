@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from toongeo.arrays import Floats, Singles
-from toongeo.colour.cielab import cielab
-from toongeo.pipeline.stylize.appearance.pixels import rgb_of, soft_step
+from toongeo.pipeline.parse.masks import filled
+from toongeo.pipeline.stylize.appearance.pixels import placed_in, rgb_of, soft_step
 from toongeo.pipeline.stylize.appearance.subject import Subject
 from toongeo.pipeline.stylize.strokes.canvas import Canvas
 from toongeo.pipeline.stylize.strokes.curves import curve, faired, taper
@@ -44,7 +44,7 @@ class _Eye:
 def draw_eyes(canvas: Canvas, subject: Subject, style: Style, pens: Pens) -> None:
     """Both eyes with one colour of iris."""
     eyes = [_eye(subject.landmarks, side) for side in (0, 1)]
-    iris = _iris_colour(canvas, subject, eyes)
+    iris = _iris_colour(subject, eyes)
     for eye, centre in zip(eyes, subject.irises, strict=True):
         if eye.height > _CLOSED * eye.width:
             _draw_ball(canvas, eye, centre, iris, style, pens)
@@ -66,18 +66,16 @@ def _middle(eye: _Eye, found: Floats | None) -> Floats:
     return np.asarray((eye.upper[len(eye.upper) // 2] + eye.lower[len(eye.lower) // 2]) / 2)
 
 
-def _iris_colour(canvas: Canvas, subject: Subject, eyes: list[_Eye]) -> Singles:
-    """CIELAB (3,) of both irises."""
+def _iris_colour(subject: Subject, eyes: list[_Eye]) -> Singles:
+    """CIELAB (3,) of both irises, by what the reduced picture shows of them."""
     seen = []
     for eye, found in zip(eyes, subject.irises, strict=True):
-        box, cover = canvas.shape_of(np.vstack([eye.upper, eye.lower[::-1]]))
-        if not cover.size:
-            continue
-        rows, columns = np.mgrid[box]
-        x, y = _middle(eye, found)
-        near = (columns - x) ** 2 + (rows - y) ** 2 < (_IRIS_COLOUR * eye.width) ** 2
-        seen.append(cielab(subject.picture[box])[near & (cover > 0.5)])
-    colours = np.concatenate(seen) if seen else np.zeros((0, 3))
+        opening = filled(subject.seen.shape, placed_in(np.vstack([eye.upper, eye.lower[::-1]]), subject.factor))
+        rows, columns = np.nonzero(opening)
+        x, y = placed_in(_middle(eye, found), subject.factor)
+        near = (columns - x) ** 2 + (rows - y) ** 2 < (_IRIS_COLOUR * eye.width * subject.factor) ** 2
+        seen.append(subject.seen[rows[near], columns[near]])
+    colours = np.concatenate(seen)
     return np.asarray(np.percentile(colours, 55, axis=0) if len(colours) else _UNKNOWN, np.float32)
 
 

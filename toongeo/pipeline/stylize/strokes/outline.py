@@ -3,13 +3,15 @@
 import numpy as np
 
 from toongeo.arrays import Floats, Singles
+from toongeo.pipeline.stylize.appearance.pixels import blurred
+from toongeo.pipeline.stylize.appearance.steep_edges import border_line
 from toongeo.pipeline.stylize.appearance.subject import Subject
 from toongeo.pipeline.stylize.strokes.canvas import Canvas
 from toongeo.pipeline.stylize.strokes.curves import curve, faired, taper, unit
 from toongeo.pipeline.stylize.strokes.pens import Pens
 from toongeo.pipeline.stylize.style import Style
 
-__all__ = ["draw_brows", "draw_jaw", "draw_nose"]
+__all__ = ["draw_brows", "draw_jaw", "draw_nose", "skin_outline"]
 
 _BROWS = (range(17, 22), range(26, 21, -1))  # from the outer end
 # Half the height of a brow along it, of the face's size, and the sigma of its edge.
@@ -57,6 +59,13 @@ def draw_jaw(canvas: Canvas, subject: Subject, pens: Pens, skin: Singles) -> Non
     t = np.linspace(0, 1, len(line))
     ends = np.clip(np.minimum(t, 1 - t) / _JAW_FADE, 0, 1) ** 1.1
     canvas.ribbon(line, 0.62 * pens.width * ends * (0.85 + 0.35 * np.abs(2 * t - 1)), pens.line, 0.85, within=skin)
+
+
+def skin_outline(subject: Subject, half_width: float) -> Singles:
+    """Cover (h, w) of a line around the skin, but for the face, whose jaw is drawn by its landmarks; px."""
+    size = subject.size * subject.factor
+    face = subject.full(np.asarray(np.clip(1.6 * blurred(subject.skin.hull, 0.02 * size), 0, 1)))
+    return np.asarray(border_line(blurred(subject.skin_cover, 0.008 * subject.size), half_width) * (1 - face))
 
 
 def draw_brows(canvas: Canvas, subject: Subject, style: Style, pens: Pens) -> None:
