@@ -121,15 +121,15 @@ def _bilateral_across(picture: Singles, flow: Singles, sigma: float, tolerance: 
         weight += share
     total *= cv2.merge([1 / weight] * 3)
     total += picture
-    return total
+    return np.asarray(total, np.float32)
 
 
 def _dot(a: Singles, b: Singles) -> Singles:
     """Inner products (h, w) over the last of three axes; products of planes."""
-    product = np.asarray(cv2.multiply(a, b))
+    product = np.asarray(cv2.multiply(a, b), np.float32)
     if product.ndim == 2:
         return product
-    return np.asarray(cv2.transform(product, np.ones((1, product.shape[2]), np.float32)))
+    return np.asarray(cv2.transform(product, np.ones((1, product.shape[2]), np.float32)), np.float32)
 
 
 def _grid(shape: tuple[int, ...]) -> Singles:
