@@ -29,6 +29,7 @@ extensions = [
     "result_plots",
     "linked_names",
     "mathml",
+    "table_heads",
 ]
 
 root_doc = "index"
@@ -64,6 +65,7 @@ html_show_sourcelink = False
 html_theme_options = {
     "logo": {"text": "toongeo"},
     "navbar_end": ["theme-switcher"],
+    "navbar_persistent": ["search-button"],
     "navbar_align": "left",
     "header_links_before_dropdown": 7,
     "show_prev_next": True,
