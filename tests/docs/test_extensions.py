@@ -66,6 +66,7 @@ def test_charts_show_the_numbers_of_the_results():
         (r"\begin{aligned} a &= b \end{aligned}", "<mtable"),
         (r"\begin{gathered} a \\ b \end{gathered}", 'displaystyle="true"'),
         (r"\arg\min_x f", "arg"),
+        (r"\mathcal L(x)", "<mi>\N{SCRIPT CAPITAL L}</mi>"),
         (r"\begin{pmatrix}1&0\\0&1\end{pmatrix}", "<mtd>"),
     ],
 )
