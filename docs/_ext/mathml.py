@@ -1,6 +1,8 @@
 """Equations as MathML, which browsers and screen readers know: no script, nothing from the network."""
 
+import contextlib
 import re
+import unicodedata
 
 from docutils.nodes import SkipNode
 from latex2mathml.converter import convert
@@ -17,6 +19,21 @@ _RENAMED = {"aligned": "split", "align": "align*", "gathered": "matrix", "gather
 _ENVIRONMENT = re.compile(rf"\\(begin|end)\{{({'|'.join(_RENAMED)})\}}")
 
 
+# Browsers know alphabets as letters of Unicode, not as a variant of plain ones.
+_VARIANT = re.compile(r'<mi mathvariant="(script|bold|double-struck|fraktur)">(\w+)</mi>')
+
+
+def _letters(text: str, variant: str) -> str:
+    def letter(c: str) -> str:
+        case = "CAPITAL" if c.isupper() else "SMALL"
+        for name in (f"MATHEMATICAL {variant} {case} {c}", f"{variant} {case} {c}", f"MATHEMATICAL {variant} {c}"):
+            with contextlib.suppress(KeyError):
+                return unicodedata.lookup(name.upper())
+        return c
+
+    return "".join(map(letter, text))
+
+
 def _mathml(latex: str, node, display: str) -> str:
     wide = "gathered" in latex
     latex = _ENVIRONMENT.sub(lambda m: rf"\{m[1]}{{{_RENAMED[m[2]]}}}", latex.strip())
@@ -29,6 +46,7 @@ def _mathml(latex: str, node, display: str) -> str:
         raise ExtensionError(f"{node.source}: no MathML of {latex!r}: {error!r}") from error
     if wide:
         found = found.replace("<mtable>", '<mtable displaystyle="true">')
+    found = _VARIANT.sub(lambda m: f"<mi>{_letters(m[2], m[1])}</mi>", found)
     # What the converter does not know it writes out as it stands.
     if unknown := re.search(r">(?:\\\w+|&)<", found):
         _logger.warning("%r is not known in %r", unknown[0][1:-1], latex, location=node)
