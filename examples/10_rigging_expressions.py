@@ -202,7 +202,7 @@ open_gap, open_lids = gap(done.vertices({"jawOpen": 0.6}), *lips), gap(done.neut
 gaps = [gap(r.vertices(sealed), *lips) for r in (raw, done)]
 shut = [gap(r.vertices({"eyeBlinkLeft": 1.0}), *lids) for r in (raw, done)]
 print(
-    f"jaw open: lips {open_gap:.0f} mm apart; with mouthClose {gaps[0]:.1f} mm (transferred), {gaps[1]:.1f} mm (finished)"
+    f"jaw open: lips {open_gap:.0f} mm apart; mouthClose: {gaps[0]:.1f} mm (transferred), {gaps[1]:.1f} mm (finished)"
 )
 print(f"left lids {open_lids:.0f} mm apart; in a blink {shut[0]:.0f} mm (transferred), {shut[1]:.0f} mm (finished)")
 

@@ -20,6 +20,7 @@ def add_model(commands: Any) -> None:
         verb.add_argument("path", type=Path, metavar="PATH", help="a file or folder of a model")
         verb.add_argument("--format", metavar="NAME", help="of the model (default: told by its content)")
         verb.add_argument("--landmarks", type=Path, metavar="FILE", help="its 68 landmarks: .json .txt .npz .npy .pkl")
+        verb.add_argument("--expression", type=Path, metavar="FILE", help="its expressions: Exp_Pca.bin, of eos .bin")
         verb.add_argument(
             "--cache", type=Path, metavar="NPZ", help="to keep what is read from the folder of ICT-FaceKit"
         )
@@ -40,7 +41,13 @@ def add_model(commands: Any) -> None:
 def _loaded(options: argparse.Namespace) -> Any:
     from toongeo.model import load_model
 
-    return load_model(options.path, format=options.format, landmarks=options.landmarks, cache=options.cache)
+    return load_model(
+        options.path,
+        format=options.format,
+        landmarks=options.landmarks,
+        expression=options.expression,
+        cache=options.cache,
+    )
 
 
 def _info(options: argparse.Namespace) -> None:
@@ -98,6 +105,7 @@ def _pick(options: argparse.Namespace) -> None:
         output=options.output,
         as_model=True,
         format=options.format,
+        expression=options.expression,
         cache=options.cache,
         port=options.port,
         show=not options.no_open,

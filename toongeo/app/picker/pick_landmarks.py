@@ -20,6 +20,7 @@ def pick_landmarks(
     output: Path | None = None,
     as_model: bool = False,
     format: str | None = None,
+    expression: Path | None = None,
     cache: Path | None = None,
     port: int = 0,
     show: bool = True,
@@ -36,7 +37,7 @@ def pick_landmarks(
         ``.json`` or ``.txt``; else ``.json`` beside the mesh, under its name.
     as_model : bool
         Whether vertices are counted as :func:`toongeo.load_model` counts them; else as ``toongeo rig`` does.
-    format, cache
+    format, expression, cache
         As of :func:`toongeo.load_model`.
     port : int
         0 takes a free one.
@@ -53,7 +54,7 @@ def pick_landmarks(
     if target.suffix.lower() not in FORMATS:
         raise ValueError(f"output: expected a name that ends in {' or '.join(FORMATS)}, got {target}")
     check_output(target, {"path": path})
-    mesh = picked_model(path, format=format, cache=cache) if as_model else picked_mesh(path)
+    mesh = picked_model(path, format=format, expression=expression, cache=cache) if as_model else picked_mesh(path)
     with path_is("landmarks"):
         session = PickerSession(mesh, path.name, target, landmarks)
     with EditorServer(session, port) as server, contextlib.suppress(KeyboardInterrupt):

@@ -62,7 +62,9 @@ def picked_mesh(path: Path) -> PickedMesh:
     return PickedMesh(vertices, faces, colours, mirror_partners(vertices))
 
 
-def picked_model(path: Path, *, format: str | None = None, cache: Path | None = None) -> PickedMesh:
+def picked_model(
+    path: Path, *, format: str | None = None, expression: Path | None = None, cache: Path | None = None
+) -> PickedMesh:
     """The mean of a model, whose vertices `MorphableModel.with_landmarks` counts; else a mesh file.
 
     Raises
@@ -75,7 +77,7 @@ def picked_model(path: Path, *, format: str | None = None, cache: Path | None = 
     if format is None and path.is_file() and path.suffix.lower() in MESH_SUFFIXES and not _has_targets(path):
         return picked_mesh(path)
     try:
-        model = load_model(path, format=format or model_format(path), cache=cache)  # type: ignore[arg-type]
+        model = load_model(path, format=format or model_format(path), expression=expression, cache=cache)  # type: ignore
     except ValueError as error:
         if not str(error).startswith("path: expected a model in one of the formats"):
             raise
