@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import igl
 import numpy as np
-from kernels import z_buffer
-from pictures import FOLDER
+from kernels import PICTURE, z_buffer
 from scipy.optimize import least_squares
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import splu
@@ -114,7 +113,7 @@ def frames() -> Pair:
 
 def fit() -> Pair:
     """The same landmarks by the library, and by scipy with a Jacobian of differences over the same modes."""
-    landmarks = read_landmarks(FOLDER / "blue_girl.pts")
+    landmarks = read_landmarks(PICTURE.with_suffix(".pts"))
     model = default_model()
     some, basis = model.mean[model.landmarks], model.identity[:20, model.landmarks].astype(float)
     scale, rotation, translation = scaled_orthographic_pose(some, landmarks)
