@@ -60,7 +60,7 @@ def read_records(folder: Path) -> dict[str, Record]:
     records = {}
     for path in sorted(folder.glob("*.md")):
         head, _, body = path.read_text(encoding="utf-8").partition("\n\n")
-        entries = dict(line.split(": ", 1) if ": " in line else (line.rstrip(":"), "") for line in head.splitlines())
+        entries = {name: value.strip() for name, _, value in (line.partition(":") for line in head.splitlines())}
         if set(entries) != set(_HEAD):
             raise ValueError(f"{path}: expected the lines {', '.join(_HEAD)} first, got {', '.join(entries)}")
         records[path.stem] = Record(path.stem, **entries, body=body.strip("\n"))
