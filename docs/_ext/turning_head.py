@@ -15,7 +15,7 @@ def turning_head(app=None) -> None:
 
         img = tg.read_image(_PICTURE.with_suffix(".png"))
         landmarks = tg.read_landmarks(_PICTURE.with_suffix(".pts"))
-        tg.make_avatar(img, landmarks).save(_PAGE)
+        tg.make_avatar(img, landmarks).save(_PAGE, title="Moustache man")
 
 
 def setup(app):
