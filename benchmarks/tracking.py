@@ -64,7 +64,7 @@ def main() -> None:
             avatar = make_avatar(read_image(picture.image), read_landmarks(picture.landmarks))
             acting, still = filmed(avatar), filmed(avatar, 2.0, still=True, hidden=None)
             moving = moves_landmarks(avatar)
-            for who in (video_driver, live_video, followed, followed_live, looked_at_singly):
+            for who in (video_driver, video_driver_told, live_video, followed, followed_live, looked_at_singly):
                 print(row(picture.name, who, acting, still, moving), flush=True)
     print(roles("tracking", names))
 
@@ -76,11 +76,21 @@ def video_driver(film: Film) -> Seen:
     return track_landmarks(film.frames, fps=film.fps).seen, VideoDriver().frames(film.frames, film.fps)[:, :46]
 
 
+def video_driver_told(film: Film) -> Seen:
+    """Which frame is neutral, as ``toongeo drive --neutral`` says it."""
+    driver = VideoDriver(neutral=at_rest(film) / film.fps)
+    return track_landmarks(film.frames, fps=film.fps).seen, driver.frames(film.frames, film.fps)[:, :46]
+
+
+def at_rest(film: Film) -> int:
+    """The frame of least expression."""
+    return int(np.argmin(film.weights.sum(axis=1) + film.hidden * 1e3))
+
+
 def live_video(film: Film) -> Seen:
     """After a moment at rest: the frame of least expression, noisy."""
-    at_rest = int(np.argmin(film.weights.sum(axis=1) + film.hidden * 1e3))
     rng, live, rows = np.random.default_rng(1), LiveVideo(), []
-    frames = [film.frames[at_rest]] * 8
+    frames = [film.frames[at_rest(film)]] * 8
     frames = [np.clip(frame + rng.normal(0, 4, frame.shape), 0, 255).astype(np.uint8) for frame in frames]
     for k, frame in enumerate([*frames, *film.frames]):
         rows.append(live(frame, k / film.fps)[:46])

@@ -14,6 +14,16 @@ GROUP = "toongeo.plugins"
 def plugin_names(kind: str) -> list[str]:
     """Names of what is installed of a kind, such as ``"detector"``.
 
+    Parameters
+    ----------
+    kind : str
+        The word before the dot of what packages offer.
+
+    Returns
+    -------
+    list of str
+        Sorted.
+
     Examples
     --------
     >>> plugin_names("beard")
@@ -38,6 +48,10 @@ def plugin(part: Any, kind: str) -> Any:
     part : str, or anything
     kind : str
         ``"detector"``, ``"parser"``, ``"regressor"`` ...: the word before the dot.
+
+    Returns
+    -------
+    The part, or ``part`` itself unless it is a name.
 
     Raises
     ------

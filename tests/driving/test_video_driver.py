@@ -7,6 +7,9 @@ from tests.driving.conftest import film, rms, smooth_weights
 from toongeo import ExpressionDriver, LandmarkDriver, LandmarkTracker, VideoDriver, track_landmarks
 from toongeo.driving.performer_of_frames import performer_of_frames
 from toongeo.driving.video_driver import CAUTION
+from toongeo.model.expression_schemes import EXPRESSIONS
+
+LIVELY = EXPRESSIONS.index("mouthSmileLeft")
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +66,28 @@ def test_frames_one_by_one_drive_too(performance):
     assert rms(found[seen, :46][:, acted] - truth) < rms(truth)
     held = found[performance.hidden]
     np.testing.assert_array_equal(held, held[:1].repeat(len(held), 0))
+
+
+def test_a_neutral_frame_that_is_told_is_neutral(performance):
+    """The frame is one of those that are not found: the actor smiles in it, and seems to smile less in all others."""
+    smiling = int(np.argmax(performance.weights[:, LIVELY] * ~performance.hidden))
+    told = VideoDriver(neutral=smiling / performance.fps).frames(performance.frames, performance.fps)
+    assert told[smiling].max() < 0.2 < performance.weights[smiling, LIVELY]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"neutral": 9.0}, "neutral: expected a time in the film of 0.60 s, got 9.0"),
+        ({"neutral": np.nan}, "neutral: expected a number of seconds >= 0, got nan"),
+        ({"neutral": -1}, "neutral: expected a number of seconds >= 0, got -1"),
+        ({"neutral": 0.5}, "neutral: expected a time at which the whole face is seen, got 0.5"),
+        ({"neutral": 0, "performer": np.zeros((68, 2))}, "neutral: expected none for a performer whose neutral face"),
+    ],
+)
+def test_a_neutral_frame_that_cannot_be_is_refused(performance, options, message):
+    with pytest.raises(ValueError, match=message):
+        VideoDriver(**options).frames(performance.frames[8:14], performance.fps)
 
 
 def test_it_is_a_driver_and_names_what_is_wrong():

@@ -53,6 +53,25 @@ def test_what_is_named_already_passes_unchanged():
         assert str(info.value) == message and info.value.__cause__ is None
 
 
+def test_a_file_that_alone_can_be_at_fault():
+    """What names something else inside is about the file, too; what names the file or its argument passes."""
+    message = r"^model: expected a face, but a\.npz is damaged or none \(ValueError: faces: expected"
+    with pytest.raises(ValueError, match=message), promise("a.npz", "a face", "model", alone=True):
+        raise ValueError("faces: expected vertices in 0..3, got 7")
+    for named in ("model: expected another", "in a.npz there is no face"):
+        with (
+            pytest.raises(ValueError, match="another|no face") as info,
+            promise("a.npz", "a face", "model", alone=True),
+        ):
+            raise ValueError(named)
+        assert str(info.value) == named
+
+
+def test_numbers_of_a_damaged_file_warn_of_nothing():
+    with promise("a.mid", "a tune"):
+        assert np.isnan(np.array([np.inf]) - np.inf).all()
+
+
 def test_memory_imports_and_warnings():
     message = r"path: expected a tune that fits into memory, but a\.mid"
     with pytest.raises(ValueError, match=message), promise("a.mid", "a tune"):

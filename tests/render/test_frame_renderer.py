@@ -90,3 +90,5 @@ def test_other_meshes_are_refused(surfaces):
         FrameRenderer(surfaces, camera, 64).frame([surfaces[0].vertices])
     with pytest.raises(ValueError, match="size: expected a positive number of px, got 0"):
         FrameRenderer(surfaces, camera, 0)
+    with pytest.raises(ValueError, match="vertices: expected finite numbers, got others"):
+        FrameRenderer(surfaces, camera, 64).frame([part.vertices * np.nan for part in surfaces])

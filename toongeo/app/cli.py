@@ -119,11 +119,13 @@ def _add_debug(parser: argparse.ArgumentParser, default: Any = False) -> None:
 
 def _add_landmarks_editor(commands: Any) -> None:
     editor = commands.add_parser("landmarks", help="place and correct landmarks in the browser, on this computer only")
-    editor.add_argument("path", type=Path, metavar="PATH", help="a picture, or a folder of pictures")
+    editor.add_argument("path", type=Path, metavar="PATH", help="a picture, a folder of pictures, or a mesh")
     editor.add_argument("--landmarks", type=Path, metavar="FILE", help="where to start (default: the file beside it)")
     which = "which face, in the file or, by size, in the picture (default 0)"
     editor.add_argument("--face", type=int, default=0, metavar="N", help=which)
-    editor.add_argument("-o", "--output", type=Path, metavar="OUT", help=".pts, .json, .csv (default: beside it)")
+    editor.add_argument(
+        "-o", "--output", type=Path, metavar="OUT", help=".pts, .json, .csv; of a mesh .json, .txt (default: beside it)"
+    )
     editor.add_argument("--port", type=port, default=0, metavar="N", help="default: a free one")
     editor.add_argument("--no-open", action="store_true", help="only print where the page is")
     editor.set_defaults(run=_landmarks)
@@ -140,6 +142,8 @@ def _add_serve(commands: Any) -> None:
     serve.add_argument("--no-open", action="store_true", help="only print the addresses")
     serve.set_defaults(run=_serve, also={"path": "AVATAR"})
 
+
+_MODEL_SUFFIXES = (".npz", ".mat", ".h5", ".pkl", ".bin")
 
 # The commands import what they need when they run, so that `toongeo --help` answers at once.
 
@@ -158,7 +162,24 @@ def _demo(options: argparse.Namespace) -> None:
 
 def _landmarks(options: argparse.Namespace) -> None:
     from toongeo.app.editor.edit_landmarks import edit_landmarks
+    from toongeo.app.picker.pick_landmarks import pick_landmarks
+    from toongeo.io import MESH_SUFFIXES
 
+    suffix = options.path.suffix.lower()
+    if suffix in _MODEL_SUFFIXES:
+        raise ValueError(
+            f"path: expected a picture, a folder of pictures or a mesh, got {options.path}; "
+            "for a model of faces: toongeo model pick"
+        )
+    if suffix in MESH_SUFFIXES:
+        pick_landmarks(
+            options.path,
+            landmarks=options.landmarks,
+            output=options.output,
+            port=options.port,
+            show=not options.no_open,
+        )
+        return
     edit_landmarks(
         options.path,
         landmarks=options.landmarks,

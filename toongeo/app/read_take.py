@@ -35,6 +35,8 @@ class TakeSource:
         What the landmarks are: see :func:`toongeo.read_landmark_file`.
     gaps : {"interpolate", "hold"}
         What stands where a table has no numbers: see :func:`toongeo.driving.read_live_link`.
+    neutral : float, optional
+        Seconds to a frame of the video in which the performer is neutral: see :class:`toongeo.VideoDriver`.
     """
 
     weights: Path | None = None
@@ -43,10 +45,13 @@ class TakeSource:
     fps: float | None = None
     scheme: str = "auto"
     gaps: Literal["interpolate", "hold"] = "interpolate"
+    neutral: float | None = None
 
     def __post_init__(self) -> None:
         if sum(file is not None for file in self.files.values()) != 1:
             raise ValueError("weights, landmarks, video: expected one of the three")
+        if self.neutral is not None and self.video is None:
+            raise ValueError("neutral: expected a video with it")
 
     @property
     def files(self) -> dict[str, Path | None]:
@@ -66,7 +71,7 @@ class TakeSource:
         if self.landmarks is not None:
             return read_landmark_take(self.landmarks, self.fps, scheme=self.scheme)
         video = read_video(str(self.video))
-        return VideoDriver().take(video if self.fps is None else replace(video, fps=self.fps))
+        return VideoDriver(neutral=self.neutral).take(video if self.fps is None else replace(video, fps=self.fps))
 
 
 def read_take(path: Path, fps: float | None = None, *, gaps: Literal["interpolate", "hold"] = "interpolate") -> Take:

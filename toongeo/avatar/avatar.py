@@ -43,8 +43,38 @@ Weights = Mapping[str, float] | np.ndarray | None
 class Avatar(AvatarStages):
     """What :func:`toongeo.make_avatar` builds; every stage's result is kept.
 
-    Attributes are those of :class:`toongeo.avatar.stages.AvatarStages`: ``fit``, ``parse``, ``face``, ``rig``,
-    ``eyes``, ``texture``, ``report``, ``hair`` and ``style``.
+    Attributes
+    ----------
+    fit : FaceFit
+    parse : FaceParse
+    face : AlignedFace
+    rig : Rig
+        ``rig.names`` are the 46 expressions, ``rig.deltas`` (46, n, 3) mm their blendshapes.
+    eyes : Eyes
+    texture : (size, size, 3) uint8 RGB
+    report : AvatarReport
+    hair : Hair or None
+        A mesh of its own, rigid on the head; None where hair is painted on the head, or there is none.
+    style : Stylized or None
+        The drawing of a photograph that the avatar was made of; None if it was made of the picture itself, or read
+        from a file.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> avatar = tg.make_avatar(img, landmarks, hair=False)
+    >>> avatar.vertices({"jawOpen": 0.6}).shape  # mm
+    (19057, 3)
+    >>> avatar.render({"eyeBlinkLeft": 1.0}, size=64).shape
+    (64, 64, 3)
+    >>> len(avatar.names), avatar.names[0]
+    (46, 'browDownLeft')
+    >>> avatar.fit.expression.shape, avatar.rig.deltas.shape, avatar.texture.shape  # what stages gave
+    ((64,), (46, 19057, 3), (1024, 1024, 3))
+    >>> avatar.save("face.glb")  # or .vrm, .usdz, .html, .obj, .ply
     """
 
     __repr__ = brief_repr
@@ -251,7 +281,8 @@ class Avatar(AvatarStages):
             parsed (some hundred kB). A file with another crop or other names never is.
         unlit : bool or "auto"
             Whether viewers show the colours as they are (``KHR_materials_unlit``, MToon in a ``.vrm``) or light them.
-            "auto": drawings as they are, photographs and paintings lit.
+            "auto": drawings as they are, photographs and paintings lit. A ``.usdz`` is always lit: its material, a
+            UsdPreviewSurface, knows nothing else.
         meta : toongeo.io.VrmMeta
             Name, authors and licence; by default nothing is allowed to others.
         title : str

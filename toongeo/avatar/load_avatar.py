@@ -49,7 +49,9 @@ def load_avatar(path: str | os.PathLike[str], *, model: MorphableModel | None = 
     --------
     ``avatar = toongeo.load_avatar("face.glb")``; and of another file:
 
-    >>> load_avatar(__file__)  # doctest: +ELLIPSIS
+    >>> from pathlib import Path
+    >>> size = Path("other.glb").write_bytes(b"nothing of the kind")
+    >>> load_avatar("other.glb")  # doctest: +ELLIPSIS
     Traceback (most recent call last):
         ...
     ValueError: path: expected a GLB (glTF 2.0), but ... is damaged or none (...)

@@ -79,6 +79,12 @@ class BatchLimits:
     ------
     ValueError
         If one is not positive.
+
+    Examples
+    --------
+    >>> from toongeo.batch import BatchLimits
+    >>> BatchLimits(seconds=60.0).seconds
+    60.0
     """
 
     seconds: float | None = 300.0

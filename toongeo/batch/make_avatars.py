@@ -32,6 +32,14 @@ class BatchResult:
     skipped : int
         Pictures that an earlier run had done.
     manifest, report : Path
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from toongeo.batch import BatchResult
+    >>> result = BatchResult({"done": 5, "refused": 2}, 0, Path("heads/manifest.jsonl"), Path("heads/report.html"))
+    >>> result.failed
+    2
     """
 
     statuses: dict[str, int]

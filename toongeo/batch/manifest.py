@@ -55,6 +55,15 @@ def read_manifest(path: str | os.PathLike[str]) -> dict[str, Record]:
     ------
     OSError
         If it cannot be read.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from toongeo.batch import read_manifest
+    >>> lines = ['{"picture": "a.png", "status": "refused"}', '{"picture": "a.png", "status": "done"}', '{"pict']
+    >>> size = Path("manifest.jsonl").write_text("\\n".join(lines))
+    >>> read_manifest("manifest.jsonl")
+    {'a.png': {'picture': 'a.png', 'status': 'done'}}
     """
     path = Path(path)
     records: dict[str, Record] = {}

@@ -66,6 +66,18 @@ class CaricatureFit:
     fit : FaceFit
         The ordinary face from which it was deformed.
     report : CaricatureReport
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> fit = tg.fit_3dmm(None, landmarks)
+    >>> twice = tg.exaggerate(fit, 1.0)  # as tg.fit_caricature(None, landmarks), but without a picture
+    >>> twice.vertices.shape, twice.w.shape
+    ((19057, 3), (2, 98))
+    >>> bool(abs(twice.vertices - fit.vertices).max() > 1)  # mm
+    True
     """
 
     vertices: Floats

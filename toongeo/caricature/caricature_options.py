@@ -47,6 +47,16 @@ class CaricatureOptions:
     ------
     ValueError
         If a number is negative or not finite, ``steps`` is below 1, or the noise is neither "auto" nor a number.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.CaricatureOptions(smoothness=0.0, ridge=0.0).steps  # nearer to the paper
+    3
+    >>> tg.CaricatureOptions(steps=0)
+    Traceback (most recent call last):
+    ...
+    ValueError: steps: expected at least 1, got 0
     """
 
     looseness: float = 0.01

@@ -44,6 +44,18 @@ def exaggerate(fit: FaceFit | CaricatureFit, amount: float, *, space: FaceSpace 
     ------
     ValueError
         If the amount is not finite, or the space has another model than the fit.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> fit = tg.fit_3dmm(None, landmarks)
+    >>> half = tg.exaggerate(fit, 0.5)
+    >>> bool(abs(tg.exaggerate(fit, 0.0).vertices - fit.vertices).max() < 0.5)  # mm
+    True
+    >>> bool(abs(half.vertices - fit.vertices).max() > 1)  # mm
+    True
     """
     if not np.isfinite(amount):
         raise ValueError(f"amount: expected a finite number, got {amount}")

@@ -17,6 +17,15 @@ def head_rotation(angles: ArrayLike) -> Floats:
     As ARKit tells how a face is held: right-handed about the axes of the face, ``Ry(yaw) Rx(pitch) Rz(roll)``. Yaw > 0
     turns it to the subject's left, pitch > 0 nods it down, roll > 0 tilts it counter-clockwise in the image.
 
+    Parameters
+    ----------
+    angles : (3,) float, radians
+        Yaw, pitch and roll.
+
+    Returns
+    -------
+    (3, 3) float64
+
     Raises
     ------
     ValueError
@@ -32,6 +41,21 @@ def head_rotation(angles: ArrayLike) -> Floats:
 
 def head_quaternions(angles: ArrayLike) -> Floats:
     """The same for frames (f, 3), as unit quaternions (f, 4) x, y, z, w without jumps of sign.
+
+    Parameters
+    ----------
+    angles : (f, 3) float, radians
+        Yaw, pitch and roll of each frame.
+
+    Returns
+    -------
+    (f, 4) float64
+        Of length 1.
+
+    Raises
+    ------
+    ValueError
+        If they are not finite, or not three a frame.
 
     Examples
     --------

@@ -137,6 +137,15 @@ class LiveLandmarks:
     """Weights of one frame after the other; made by :meth:`LandmarkDriver.live`.
 
     Smooths by what has come so far, so it follows a little later than :meth:`LandmarkDriver.frames`.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> model = tg.default_model()
+    >>> neutral = model.mean[model.landmarks, :2] * [1, -1]  # px of a performer at rest
+    >>> live = tg.LandmarkDriver(neutral).live()
+    >>> live(neutral, 0.0).shape, live(neutral, 0.04).shape
+    ((54,), (54,))
     """
 
     def __init__(self, rig: LandmarkRig, scheme: str = "ibug68", caution: float = _CAUTION) -> None:

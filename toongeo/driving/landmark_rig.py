@@ -28,6 +28,16 @@ class LandmarkRig:
     neutral : (68, 3) float64, mm, model frame
     deltas : (k, 68, 3) float64, mm
         What each expression at weight 1 adds.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.driving import LandmarkRig
+    >>> model = tg.default_model()
+    >>> deltas = model.expression[: model.n_named, model.landmarks].astype(float)
+    >>> rig = LandmarkRig(model.expression_names[: model.n_named], model.mean[model.landmarks], deltas)
+    >>> 100 < rig.width < 200  # mm, from ear to ear
+    True
     """
 
     names: tuple[str, ...]

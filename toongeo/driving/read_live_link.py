@@ -53,6 +53,15 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None, ga
     ValueError
         If no column is an expression or one is twice there, a line has another number of cells, a cell is no number,
         or times go back; says which line and column.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from toongeo.driving import read_live_link
+    >>> size = Path("take.csv").write_text("time,jawOpen\\n0.0,0.0\\n0.5,1.0\\n")
+    >>> take = read_live_link("take.csv")
+    >>> take.weights.shape, take.seconds
+    ((2, 54), 0.5)
     """
     if gaps not in get_args(_Gaps):
         raise ValueError(f"gaps: expected 'interpolate' or 'hold', got {gaps!r}")

@@ -45,6 +45,16 @@ def send_weights(
         If the address is none, the server refuses the token or is none of ours, or does not understand a frame.
     OSError
         If there is no server, it goes away, or no page answers in time.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> words = [{"jawOpen": k / 10} for k in range(10)]
+    >>> tg.send_weights("ws://127.0.0.1:8000/source?token=...", words, fps=30)  # doctest: +SKIP
+    >>> tg.send_weights("127.0.0.1", words)  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    ValueError: url: expected ws://...
     """
     if fps is not None and not (np.isfinite(fps) and fps > 0):
         raise ValueError(f"fps: expected a rate > 0, got {fps!r}")

@@ -32,6 +32,18 @@ class Take:
         ``toongeo.driving.head_rotation``.
     notes : tuple of str
         What a reader filled or left out.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> weights = np.zeros((61, 54))
+    >>> weights[:, 0] = np.linspace(0, 1, 61)
+    >>> take = tg.Take.of_frames(weights, fps=30)
+    >>> take.seconds
+    2.0
+    >>> take.between(0.5, 1.5).weights.shape, take.resampled(10).weights.shape
+    ((31, 54), (21, 54))
     """
 
     times: Floats

@@ -55,6 +55,16 @@ def edit_expression(
         If neither or both of weights and reference are given, relative with a reference, no face can be fitted to the
         reference, a name is unknown (the nearest are suggested), or for pictures and landmarks as
         :func:`toongeo.make_avatar`.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> smile = tg.edit_expression(img, landmarks, {"mouthSmileLeft": 0.8, "mouthSmileRight": 0.8})
+    >>> smile.shape == img.shape, bool((smile != img).any())
+    (True, True)
     """
     if (weights is None) == (reference is None):
         raise ValueError("weights, reference: expected one of them, got " + ("neither" if weights is None else "both"))

@@ -57,6 +57,18 @@ class ExpressionEditor:
     ValueError
         For pictures and landmarks as :func:`toongeo.make_avatar`; for ``pose`` as :meth:`frame`; if the avatar's model
         has no eyeballs, lids, blinks, lips, inside of the mouth or texture coordinates.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> avatar = tg.make_avatar(img, landmarks, hair=False)
+    >>> editor = tg.ExpressionEditor(img, landmarks, avatar=avatar)
+    >>> smile = editor.frame({"mouthSmileLeft": 0.8, "mouthSmileRight": 0.8})
+    >>> smile.shape == img.shape, bool((smile != img).any()), bool((smile == img)[0].all())
+    (True, True, True)
     """
 
     def __init__(
@@ -102,7 +114,7 @@ class ExpressionEditor:
         Parameters
         ----------
         change : mapping of name to weight, (46,) array or (54,) array
-            Added to :attr:`pose`. Names that are left out are as in the picture, and with 0 everywhere so is the frame.
+            Added to `pose`. Names that are left out are as in the picture, and with 0 everywhere so is the frame.
 
         Raises
         ------

@@ -51,6 +51,21 @@ class ClassicalTextureGenerator:
     ------
     ValueError
         If the texture is not square uint8 RGB.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> avatar = tg.make_avatar(img, landmarks, hair=False)
+    >>> generator = tg.ClassicalTextureGenerator(avatar.fit.model, avatar.rig, avatar.texture)
+    >>> model, wanted = avatar.fit.model, {"jawOpen": 1.0}
+    >>> surfaces = avatar.vertices(), avatar.vertices(wanted)
+    >>> geometry = tg.TextureGeometry(*surfaces, model.faces, model.uv, model.uv_faces)
+    >>> colour, attention = generator(avatar.texture, avatar.rig.weights(), avatar.rig.weights(wanted), geometry)
+    >>> colour.shape, attention.shape  # T* = A T + (1 - A) C: see tg.compose_texture
+    ((1024, 1024, 3), (1024, 1024))
     """
 
     def __init__(self, model: MorphableModel, rig: Rig, texture: np.ndarray) -> None:

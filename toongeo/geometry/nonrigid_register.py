@@ -51,6 +51,18 @@ class RegisteredMesh:
     status : {"converged", "iteration limit"}
         Whether the last iteration moved the vertices by less than a thousandth of the spread of the landmarks, on
         average.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> V = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> F = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    >>> found = tg.nonrigid_register(V, F, 2 * V + 5, F, [0, 1, 2, 3], [0, 1, 2, 3])
+    >>> found.status, round(found.scale, 9), bool(found.distances.max() < 1e-9)
+    ('converged', 2.0, True)
+    >>> bool(np.allclose(found.scale * V @ found.rotation.T + found.shift, 2 * V + 5))  # where it started
+    True
     """
 
     vertices: Floats

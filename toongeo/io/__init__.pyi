@@ -43,6 +43,7 @@ from toongeo.io.writers.vrm_meta import VrmMeta as VrmMeta
 from toongeo.io.writers.write_glb import write_glb as write_glb
 from toongeo.io.writers.write_image import write_image as write_image
 from toongeo.io.writers.write_landmarks import write_landmarks as write_landmarks
+from toongeo.io.writers.write_mesh_landmarks import write_mesh_landmarks as write_mesh_landmarks
 from toongeo.io.writers.write_obj import write_obj as write_obj
 from toongeo.io.writers.write_obj_sequence import write_obj_sequence as write_obj_sequence
 from toongeo.io.writers.write_ply import write_ply as write_ply

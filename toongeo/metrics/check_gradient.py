@@ -35,6 +35,17 @@ class GradientCheck:
         gradient is right, 1 if it is wrong; infinite where no remainder is left to see.
     passed : bool
         Whether all slopes are those of a right gradient.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> right = tg.check_gradient(lambda x: (float((x**3).sum()), 3 * x**2), np.array([0.3, 1.0]))
+    >>> wrong = tg.check_gradient(lambda x: (float((x**3).sum()), x**2), np.array([0.3, 1.0]))
+    >>> right.passed, wrong.passed
+    (True, False)
+    >>> right.remainders.shape == (len(right.slopes), len(right.steps))
+    True
     """
 
     steps: Floats

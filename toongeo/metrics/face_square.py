@@ -19,6 +19,11 @@ def face_square(landmarks: ArrayLike) -> tuple[NDArray[np.float64], float]:
     landmarks : (68, 2) float, px
         NaN rows are missing.
 
+    Returns
+    -------
+    corner : (2,) float64, px
+    side : float, px
+
     Raises
     ------
     ValueError

@@ -26,6 +26,14 @@ class MeshQuality:
         Folded edges of the selected triangles: vertex pairs ``i < j``, sorted.
     selected : int
         How many triangles were looked at.
+
+    Examples
+    --------
+    >>> from toongeo.metrics import mesh_quality
+    >>> V = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> quality = mesh_quality(V, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> quality.intersecting_fraction, quality.selected
+    (0.0, 4)
     """
 
     intersecting: NDArray[np.int64]

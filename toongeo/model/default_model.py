@@ -22,6 +22,10 @@ def default_model() -> MorphableModel:
     face that these can make to the mean of people, which they do not span. The mean of the model is the artist's; the
     likeliest face is ``default_model().prior.mean``. Loaded once a process; read-only.
 
+    Returns
+    -------
+    MorphableModel
+
     Examples
     --------
     >>> model = default_model()

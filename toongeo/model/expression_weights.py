@@ -67,6 +67,11 @@ def preset(name: str, strength: float = 1.0) -> dict[str, float]:
     strength : float
         By which all weights are multiplied.
 
+    Returns
+    -------
+    dict
+        Weights by name, as :meth:`toongeo.Avatar.vertices` takes them.
+
     Raises
     ------
     ValueError

@@ -77,6 +77,17 @@ class MorphableModel:
     ValueError
         If the mean of the prior has another length than there are identity modes, an array has another shape than it
         should, numbers that are not finite or indices out of range, or the sizes of two do not fit together.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> model = tg.default_model()
+    >>> model.mean.shape, model.identity.shape, model.n_named
+    ((19057, 3), (81, 19057, 3), 46)
+    >>> face = model.vertices(np.eye(81)[0], np.eye(64)[model.expression_index("jawOpen")])  # (n, 3) mm
+    >>> float(np.linalg.norm(face - model.mean, axis=1).max()) > 5  # mm
+    True
     """
 
     mean: np.ndarray

@@ -27,6 +27,14 @@ class Coefficients:
         Spherical harmonics a channel.
     pose : HeadCamera
         From the model frame to the picture.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> known = tg.Coefficients(identity=np.zeros(81))  # what a regressor gives that knows the identity alone
+    >>> known.identity.shape, known.expression is None
+    ((81,), True)
     """
 
     identity: np.ndarray | None = None

@@ -14,7 +14,25 @@ __all__ = ["FaceLabel", "FaceParse", "FaceParser", "HairFinder", "HairMask"]
 
 
 class FaceLabel(IntEnum):
-    """What a pixel of a parsed face shows. Left and right are the subject's."""
+    """What a pixel of a parsed face shows: a number of uint8. Left and right are the subject's.
+
+    Attributes
+    ----------
+    BACKGROUND, SKIN, BROW_LEFT, BROW_RIGHT, EYE_LEFT, EYE_RIGHT, NOSE, UPPER_LIP, LOWER_LIP, INNER_MOUTH : 0 to 9
+    HAIR, EARS, NECK : 10 to 12
+    OTHER : 13
+        Glasses, hands, beards, black outlines.
+    HAT : 14
+        Caps, hoods, helmets, scarves about the head.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> int(tg.FaceLabel.HAIR), tg.FaceLabel(10).name
+    (10, 'HAIR')
+    >>> [label.name for label in tg.FaceLabel if label.name.endswith("LIP")]
+    ['UPPER_LIP', 'LOWER_LIP']
+    """
 
     BACKGROUND = 0
     SKIN = 1
@@ -49,6 +67,14 @@ class HairMask:
         How far each pixel is covered by hair: soft where strands mix with what is behind them.
     hat : (H, W) bool, optional
         Pixels of a hat; None or all False where there is none. No pixel is hair and hat.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> hair = tg.HairMask(np.zeros((48, 64), dtype=bool), trusted=False, reasons=("No hair was found.",))
+    >>> hair.mask.shape, hair.trusted
+    ((48, 64), False)
     """
 
     mask: np.ndarray
@@ -92,6 +118,16 @@ class FaceParse:
         How far each label is to be believed.
     hair : HairMask, optional
         The hair that the labels follow, and whether it is to be trusted.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> labels = np.zeros((4, 4), dtype=np.uint8)
+    >>> labels[1:3, 1:3] = tg.FaceLabel.SKIN
+    >>> parse = tg.FaceParse(labels, np.ones((4, 4)))
+    >>> int(parse.mask(tg.FaceLabel.SKIN, tg.FaceLabel.NOSE).sum())
+    4
     """
 
     labels: np.ndarray

@@ -22,6 +22,16 @@ class LandmarkDetection:
         The chance of each point to lie within 8 % of the outer-eye distance from its place.
     score : float in [0, 1]
         The chance that this is a face at all.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> found = tg.detect_landmarks(img)
+    >>> found.points.shape, found.confidence.shape, 0 < found.score <= 1
+    ((68, 2), (68,), True)
     """
 
     points: np.ndarray

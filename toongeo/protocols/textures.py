@@ -23,6 +23,15 @@ class TextureGeometry:
         Origin bottom left.
     uv_faces : (m, 3) int
         Corners of the faces in ``uv``.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> model = tg.default_model()
+    >>> open_jaw = model.mean + model.expression[model.expression_index("jawOpen")]
+    >>> geometry = tg.TextureGeometry(model.mean, open_jaw, model.faces, model.uv, model.uv_faces)
+    >>> tg.attention_map(geometry, 64).shape
+    (64, 64)
     """
 
     source: np.ndarray

@@ -20,11 +20,11 @@ def npy_array(stream: IO[bytes], held: int, *, kinds: str = "iuf", most_numbers:
     Parameters
     ----------
     stream
-        At its beginning; it must be able to go back there.
+        At its beginning.
     held
         Bytes of the stream in all.
     kinds
-        Of NumPy's types that are taken: ``"b"`` truth values, ``"i"``, ``"u"``, ``"f"`` numbers, ``"U"`` texts.
+        Of NumPy's types that are taken: ``"b"`` truth values, ``"iuf"`` numbers, ``"SU"`` texts.
     most_numbers
         That are read; 2**28 doubles are 2 GB.
 
@@ -39,7 +39,7 @@ def npy_array(stream: IO[bytes], held: int, *, kinds: str = "iuf", most_numbers:
         version = np.lib.format.read_magic(stream)
         if version not in _HEADERS:
             raise ValueError(f"version {version} of the format is not known here")
-        shape, _, dtype = _HEADERS[version](stream)
+        shape, fortran, dtype = _HEADERS[version](stream)
         if dtype.kind not in kinds:
             raise ValueError(f"got {dtype}")
         if not all(type(n) is int and n >= 0 for n in shape):
@@ -47,5 +47,8 @@ def npy_array(stream: IO[bytes], held: int, *, kinds: str = "iuf", most_numbers:
         left, count = held - stream.tell(), math.prod(shape)
         if count > most_numbers or count * dtype.itemsize > left:
             raise ValueError(f"the shape is {shape}, but {left} bytes follow, and at most {most_numbers} are read")
-        stream.seek(0)
-        return np.lib.format.read_array(stream, allow_pickle=False)
+    content = bytearray(stream.read(count * dtype.itemsize))
+    if len(content) != count * dtype.itemsize:
+        raise ValueError(f"the shape is {shape}, but {len(content)} bytes follow")
+    array = np.frombuffer(content, dtype, count) if content else np.zeros(count, dtype)
+    return array.reshape(shape, order="F" if fortran else "C")

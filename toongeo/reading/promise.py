@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from functools import wraps
 from typing import ParamSpec, TypeVar
 
+import numpy as np
+
 __all__ = ["promise", "promised"]
 
 _P = ParamSpec("_P")
@@ -18,7 +20,7 @@ _LONGEST = 200  # characters of a library's own words
 
 
 @contextmanager
-def promise(path: object, expected: str, argument: str = "path") -> Iterator[None]:
+def promise(path: object, expected: str, argument: str = "path", *, alone: bool = False) -> Iterator[None]:
     """Whatever fails inside becomes a ``ValueError`` or an ``OSError`` that names the argument and the cause.
 
     Libraries fail on damaged files in ways that nobody lists (``BadZipFile``, ``EOFError``, ``KeyError``,
@@ -33,13 +35,16 @@ def promise(path: object, expected: str, argument: str = "path") -> Iterator[Non
         What it should be, with its article: ``"a GLB"``.
     argument
         What the caller calls it.
+    alone
+        Whether nothing but the file can be at fault: then errors that name something else are about it, too.
 
     Raises
     ------
     OSError
         If the system refused something; it names the file.
     ValueError
-        If anything else failed. Those that name an argument or the file already pass unchanged.
+        If anything else failed. Those that name an argument or the file already pass unchanged. What numbers of a
+        damaged file do to NumPy on the way there warns of nothing.
     ImportError
         If a package is missing, which is no fault of the file.
 
@@ -52,7 +57,8 @@ def promise(path: object, expected: str, argument: str = "path") -> Iterator[Non
     ValueError: path: expected a list of points, but face.xyz is damaged or none (KeyError: 'points')
     """
     try:
-        yield
+        with np.errstate(all="ignore"):
+            yield
     except (ImportError, Warning):
         raise
     except OSError as error:
@@ -64,7 +70,9 @@ def promise(path: object, expected: str, argument: str = "path") -> Iterator[Non
     except MemoryError as error:
         raise ValueError(f"{argument}: expected {expected} that fits into memory, but {path} does not") from error
     except Exception as error:
-        if isinstance(error, ValueError) and (_NAMED.match(str(error)) or str(path) in str(error)):
+        text = str(error)
+        named = text.startswith(f"{argument}: ") if alone else _NAMED.match(text)
+        if isinstance(error, ValueError) and (named or str(path) in text):
             raise
         raise ValueError(_message(path, expected, argument, error)) from error
 

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from toongeo._brief_repr import brief_repr
-from toongeo.render.raster.opencv_nearest import opencv_nearest
-from toongeo.render.raster.z_buffer import z_buffer
+from toongeo.render.raster.affine_weights import affine_weights
+from toongeo.render.raster.nearest_rows import nearest_rows
+from toongeo.render.raster.reaching_a_pixel import reaching_a_pixel
 
 __all__ = ["Fragments", "rasterize"]
 
 _MAX_FACES = 2**24  # ids travel as float32 colours, exact up to here
 _MAX_REACH = 2.0**20  # px; beyond this the float32 edge functions of OpenCV lose the pixel grid
-_ROUNDING = 2.5e-7  # of the image's side: what the float32 projection may move a point by
-_MAX_GROWTH = 0.002  # of a face's own size, for slivers
-_MARGIN = 1e-3  # px, above what a face may grow by
 _CHUNK = 2**15  # pixels that stay in the cache
 
 
@@ -32,6 +29,14 @@ class Fragments:
         Row of the face that is nearest at the pixel centre, -1 where there is none.
     barycentrics : ndarray of float32, shape (height, width, 3)
         Weights of that face's three corners, >= 0 with sum 1; all 0 where there is no face.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from toongeo.render import Fragments
+    >>> nothing = Fragments(np.full((4, 6), -1, dtype=np.int32), np.zeros((4, 6, 3), dtype=np.float32))
+    >>> bool((nothing.face_ids == -1).all())
+    True
     """
 
     face_ids: NDArray[np.int32]
@@ -63,7 +68,6 @@ def rasterize(
     width: int,
     *,
     cull_back: bool = False,
-    only: NDArray[np.bool_] | None = None,
 ) -> Fragments:
     """Nearest face and barycentric coordinates at every pixel centre.
 
@@ -84,8 +88,6 @@ def rasterize(
         Size of the image in pixels.
     cull_back : bool
         Leave out faces whose corners run clockwise as seen in the image.
-    only : (height, width) bool, optional
-        Pixels that are asked for; the others are as if no face were there, which takes less time.
 
     Returns
     -------
@@ -108,19 +110,11 @@ def rasterize(
     array([0.5, 0.5, 0. ], dtype=float32)
     """
     points, faces = _checked(points_px, F, height, width)
-    drawn = _reaching_a_pixel(points, faces, height, width)
-    affine, twice_area = _affine_weights(points, faces[drawn])
+    drawn = reaching_a_pixel(points, faces, height, width)
+    affine, twice_area = affine_weights(points, faces[drawn])
     kept = np.flatnonzero(twice_area < 0.0 if cull_back else twice_area)
     drawn, affine = drawn[kept], affine[kept]
-    growth = _growth(affine, height, width)
-    if hasattr(cv2, "triangleRasterizeColor"):  # OpenCV 5, unless built without it
-        rows = opencv_nearest(points, faces[drawn], growth, height, width)
-    else:
-        rows = z_buffer(points, faces[drawn], affine, growth, height, width)
-    if only is not None:
-        if only.shape != (height, width):
-            raise ValueError(f"only: expected shape ({height}, {width}), got {only.shape}")
-        rows = np.where(only, rows, np.int32(-1))
+    rows = nearest_rows(points, faces[drawn], affine, height, width)
     barycentrics = _barycentrics(affine, rows)
     face_ids = np.append(drawn, -1).astype(np.int32)[rows]  # row -1 is the last one
     return Fragments(face_ids, barycentrics)
@@ -153,50 +147,7 @@ def _checked(
     return points, faces
 
 
-def _reaching_a_pixel(
-    points: NDArray[np.float64], faces: NDArray[np.int64], height: int, width: int
-) -> NDArray[np.int64]:
-    """Rows of the faces whose bounding box holds a pixel centre: small pictures drop most of them here."""
-    keep = np.ones(len(faces), bool)
-    for axis, size in enumerate((width, height)):
-        a, b, c = (points[:, axis][faces[:, corner]] for corner in range(3))
-        first = np.ceil(np.minimum(np.minimum(a, b), c) - _MARGIN)
-        last = np.floor(np.maximum(np.maximum(a, b), c) + _MARGIN)
-        keep &= np.maximum(first, 0.0) <= np.minimum(last, size - 1.0)
-    return np.flatnonzero(keep)
-
-
-def _affine_weights(
-    points: NDArray[np.float64], faces: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Six numbers a face: the weights of its corners 1 and 2 are affine in the pixel, gx x + gy y + g0.
-
-    Also twice the signed area (m,), negative for a face that runs counter-clockwise as seen (y is down).
-    """
-    x, y = np.ascontiguousarray(points[:, :2].T)
-    a, b, c = faces.T
-    ax, ay = x[a], y[a]
-    ux, uy, vx, vy = x[b] - ax, y[b] - ay, x[c] - ax, y[c] - ay
-    twice_area = ux * vy - uy * vx
-    inverse = 1.0 / np.where(twice_area == 0.0, np.inf, twice_area)
-    gx1, gy1, gx2, gy2 = vy * inverse, -vx * inverse, -uy * inverse, ux * inverse
-    constants = -(gx1 * ax + gy1 * ay), -(gx2 * ax + gy2 * ay)
-    return np.column_stack([gx1, gy1, constants[0], gx2, gy2, constants[1]]), twice_area
-
-
-def _growth(affine: NDArray[np.float64], height: int, width: int) -> NDArray[np.float32]:
-    """By which part of its size (m,) a face must grow for its edges to move out by the rounding error.
-
-    A pixel centre on an edge then belongs to the faces on both sides; else float32 opens cracks between them.
-    """
-    gx1, gy1, gx2, gy2 = affine[:, 0], affine[:, 1], affine[:, 3], affine[:, 4]
-    steepest = np.maximum(np.abs(gx1) + np.abs(gy1), np.abs(gx2) + np.abs(gy2))  # 1 / height of the face
-    steepest = np.maximum(steepest, np.abs(gx1 + gx2) + np.abs(gy1 + gy2))
-    distance = 3.0 * _ROUNDING * max(height, width)  # the centroid has the weights 1/3
-    return np.minimum(distance * steepest, _MAX_GROWTH).astype(np.float32)
-
-
-def _barycentrics(affine: NDArray[np.float64], rows: NDArray[np.int32]) -> NDArray[np.float32]:
+def _barycentrics(affine: NDArray[np.float64], rows: NDArray[np.integer]) -> NDArray[np.float32]:
     """Barycentrics (height, width, 3) of every pixel in the face it shows."""
     height, width = rows.shape
     flat_rows = rows.ravel()

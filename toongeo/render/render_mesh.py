@@ -71,6 +71,7 @@ def render_mesh(
     Examples
     --------
     >>> from toongeo.render import ScaledOrthographicCamera
+    >>> from toongeo.render import Surface
     >>> triangle = Surface([[-9, -9, 0], [9, -9, 0], [0, 9, 0]], [[0, 1, 2]], colours=np.eye(3))
     >>> camera = ScaledOrthographicCamera.look(size=32, extent=20.0)
     >>> picture = render_mesh(triangle, camera, 32, shading="unlit")

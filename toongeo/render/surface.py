@@ -36,6 +36,14 @@ class Surface:
     ------
     ValueError
         If a shape, type or index is wrong, or only a part of uv, uv_faces and texture is given.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from toongeo.render import Surface
+    >>> triangle = Surface([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], colours=np.eye(3))
+    >>> triangle.vertices.dtype, triangle.texture is None
+    (dtype('float64'), True)
     """
 
     vertices: NDArray[np.float64]

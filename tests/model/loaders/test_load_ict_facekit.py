@@ -61,7 +61,7 @@ def test_its_own_face_is_recognised(ict):
 
 def test_another_archive_is_refused(tmp_path):
     np.savez(tmp_path / "other.npz", neutral=np.zeros((5, 3)))
-    with pytest.raises(ValueError, match="expected the arrays .*, without .*landmarks68"):
+    with pytest.raises(ValueError, match="path: expected an archive of ICT-FaceKit, got no .*'landmarks68'"):
         load_ict_facekit(tmp_path / "other.npz")
 
 

@@ -1,11 +1,8 @@
 """Regressors: where a fit starts or its answer, any part missing; and the one that comes along."""
 
-import runpy
-
 import numpy as np
 import pytest
 
-from tests.conftest import ROOT
 from toongeo.io import read_landmarks
 from toongeo.model import data_path
 from toongeo.pipeline import PriorOptions, SolverOptions
@@ -160,8 +157,3 @@ def test_bad_training(model, rng, ridge):
         train_ridge_regressor(model, rng, 5, ridge=0.0)
     with pytest.raises(ValueError, match="landmarks: expected at least 6 points"):
         ridge(None, np.full((68, 2), np.nan))
-
-
-def test_the_example_runs(capsys):
-    runpy.run_path(str(ROOT / "examples" / "plug_in_a_regressor.py"))
-    assert capsys.readouterr().out.count("refine=") == 3

@@ -1,10 +1,16 @@
 """Every function that takes landmarks takes them in the schemes of `ibug_landmarks`, with the same result."""
 
+from functools import lru_cache
+
 import numpy as np
 import pytest
 
 from toongeo.caricature import fit_caricature
+from toongeo.caricature.baselines.bilinear_model import BilinearModel, bilinear_fit
+from toongeo.caricature.baselines.linear_fit import linear_fit
+from toongeo.caricature.blendshapes.sparse_expression import sparse_expression
 from toongeo.driving import LandmarkDriver
+from toongeo.model import default_model
 from toongeo.model.ibug68 import INNER
 from toongeo.model.mediapipe478 import VERTICES
 from toongeo.pipeline import align_face, find_irises, fit_3dmm, ibug_landmarks, parse_face, snap_eyes
@@ -22,7 +28,13 @@ def case(cartoon):
     return img, landmarks, mesh, fit, parse_face(img, landmarks, fit)
 
 
+@lru_cache
+def bilinear(model):
+    return BilinearModel.from_model(model, np.random.default_rng(0), identities=20)
+
+
 def functions(img, fit, parse):
+    model = default_model()
     return {
         "fit_3dmm": lambda x, **s: fit_3dmm(img, x, **s).vertices,
         "parse_face": lambda x, **s: parse_face(img, x, fit, **s).labels,
@@ -34,6 +46,9 @@ def functions(img, fit, parse):
         ),
         "photometric_fit": lambda x, **s: photometric_fit(img, fit, x, **s).vertices,
         "fit_caricature": lambda x, **s: fit_caricature(img, x, iterations=1, **s).vertices,
+        "linear_fit": lambda x, **s: linear_fit(x, model, model.mean, model.identity, 1.0, **s).vertices,
+        "bilinear_fit": lambda x, **s: bilinear_fit(x, model, bilinear(model), **s).vertices,
+        "sparse_expression": lambda x, **s: sparse_expression(fit, x, **s).vertices,
         "LandmarkDriver": lambda x, **s: LandmarkDriver(x, **s).frames(np.stack([x, x + 1])),
     }
 

@@ -20,6 +20,8 @@ def add_performances(commands: "argparse._SubParsersAction[argparse.ArgumentPars
     scheme = "of the landmarks, such as wflw98 (default auto: by their number)"
     drive.add_argument("--scheme", default="auto", metavar="NAME", help=scheme)
     drive.add_argument("--take-fps", type=float, help="of a take that does not say it")
+    neutral = "second of the film at which the actor looks into the camera without expression (default: looked for)"
+    drive.add_argument("--neutral", type=float, metavar="S", help=neutral)
     gaps = "what stands where a table has no numbers (default interpolate)"
     drive.add_argument("--gaps", choices=("interpolate", "hold"), default="interpolate", help=gaps)
     drive.add_argument("--actor", choices=("beside", "corner"), help="show the film of the actor too")
@@ -61,7 +63,13 @@ def _drive(options: argparse.Namespace) -> None:
     from toongeo.app.read_take import TakeSource
 
     source = TakeSource(
-        options.weights, options.landmarks, options.video, options.take_fps, options.scheme, options.gaps
+        options.weights,
+        options.landmarks,
+        options.video,
+        options.take_fps,
+        options.scheme,
+        options.gaps,
+        options.neutral,
     )
     drive(options.avatar, options.output, source, _options(options, actor=options.actor), sound=options.sound)
 

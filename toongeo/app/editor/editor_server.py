@@ -1,4 +1,4 @@
-"""The landmark editor's web server, on this computer only."""
+"""The web server of the landmark editor and of the picker, on this computer only."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
-from toongeo.app.editor.editor_session import EditorSession
-from toongeo.app.editor.editor_settings import editor_settings
+from toongeo.app.editor.protocols import Session
 from toongeo.app.loopback import HOST, check_port, refusal
 from toongeo.io.editor_page import editor_page
 
@@ -26,14 +25,14 @@ _SCHEME = "Bearer "
 
 
 class EditorServer(ThreadingHTTPServer):
-    """Serves the page of an editing session on the loopback interface, and answers it.
+    """Serves the page of a session on the loopback interface, and answers it.
 
     Whoever asks must know ``token``, which is new for each server: in the address of the page, and in the header
     ``Authorization`` of everything else, which no other page can send along.
 
     Parameters
     ----------
-    session : EditorSession
+    session : Session
     port : int
         0 takes a free one.
 
@@ -46,13 +45,12 @@ class EditorServer(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = os.name == "posix"  # elsewhere it would let two servers share a port
 
-    def __init__(self, session: EditorSession, port: int = 0) -> None:
+    def __init__(self, session: Session, port: int = 0) -> None:
         check_port(port)
         self._free = threading.BoundedSemaphore(_MOST_PEERS)
         self.session = session
         self.token = secrets.token_urlsafe(24)
-        settings = editor_settings() | {"token": self.token, "detector": session.detector is not None}
-        self.page, self.policy = editor_page(settings, title="Landmarks")
+        self.page, self.policy = editor_page(session.settings() | {"token": self.token}, title=session.title)
         super().__init__((HOST, port), _Handler)
         self.port = int(self.server_address[1])
 
@@ -97,7 +95,9 @@ class _Handler(BaseHTTPRequestHandler):
             self._reply(HTTPStatus.OK, "text/html; charset=utf-8", self.server.page.encode())
             return
         _, _, number = path.path.partition("/picture/")
-        if not (number.isascii() and number.isdigit() and len(number) < 8 and int(number) < self._pictures()):
+        if not (
+            number.isascii() and number.isdigit() and len(number) < 8 and int(number) < self.server.session.n_pictures
+        ):
             self._refuse(HTTPStatus.NOT_FOUND, "there is nothing here\n")
             return
         self._try(lambda: self._reply(HTTPStatus.OK, "image/jpeg", self.server.session.shown_picture(int(number))))
@@ -132,9 +132,6 @@ class _Handler(BaseHTTPRequestHandler):
             if isinstance(error, ConnectionError):
                 raise
             self._reply(HTTPStatus.UNPROCESSABLE_ENTITY, "text/plain; charset=utf-8", str(error).encode())
-
-    def _pictures(self) -> int:
-        return len(self.server.session.pictures)
 
     def _bearer(self) -> str:
         given = self.headers.get("Authorization", "")

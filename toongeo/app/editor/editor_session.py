@@ -9,6 +9,7 @@ from typing import Any
 import cv2
 import numpy as np
 
+from toongeo.app.editor.editor_settings import editor_settings
 from toongeo.app.editor.face_mesh import face_mesh, seen_vertices
 from toongeo.app.editor.place_landmarks import place_landmarks
 from toongeo.app.editor.protocols import Detector, Pictures
@@ -47,6 +48,17 @@ class EditorSession:
             "fit": self._refit,
             "save": self._save,
         }
+
+    title = "Landmarks"
+
+    def settings(self) -> dict[str, Any]:
+        """What the page knows from the beginning."""
+        return editor_settings() | {"detector": self.detector is not None}
+
+    @property
+    def n_pictures(self) -> int:
+        """How many there are."""
+        return len(self.pictures)
 
     def answer(self, question: str, message: dict[str, Any]) -> dict[str, Any]:
         """What a question asks, as JSON takes it.

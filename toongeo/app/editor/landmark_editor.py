@@ -38,6 +38,16 @@ class LandmarkEditor:
         If ``anywidget`` is not installed.
     ValueError
         If the picture or the landmarks are not as above.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> editor = tg.LandmarkEditor(img, landmarks)  # the last line of a cell shows it
+    >>> editor.landmarks.shape  # as they are after dragging
+    (68, 2)
     """
 
     def __init__(

@@ -1,13 +1,13 @@
-"""What an editing session needs from others."""
+"""What an editing session needs from others, and what a server needs from a session."""
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from toongeo.arrays import Bytes, Floats
 from toongeo.protocols import LandmarkDetection
 
-__all__ = ["Detector", "Pictures"]
+__all__ = ["Detector", "Pictures", "Session"]
 
 
 Detector = Callable[[Bytes], LandmarkDetection | None]
@@ -46,4 +46,30 @@ class Pictures(Protocol):
 
     def save(self, k: int, landmarks: Floats, suffix: str) -> Path:
         """Keep landmarks (68, 2) px, NaN where missing; where."""
+        ...
+
+
+class Session(Protocol):
+    """What a page asks, and the answers."""
+
+    @property
+    def title(self) -> str:
+        """Of the page."""
+        ...
+
+    @property
+    def n_pictures(self) -> int:
+        """How many pictures it can show."""
+        ...
+
+    def settings(self) -> dict[str, Any]:
+        """What the page knows from the beginning."""
+        ...
+
+    def shown_picture(self, k: int) -> bytes:
+        """A picture as JPEG."""
+        ...
+
+    def answer(self, question: str, message: dict[str, Any]) -> dict[str, Any]:
+        """What a question asks, as JSON takes it; a ValueError or an OSError is told to the page."""
         ...

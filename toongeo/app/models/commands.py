@@ -1,10 +1,12 @@
-"""``toongeo model info|convert|check|render``: models of others on the command line."""
+"""``toongeo model info|convert|check|render|pick``: models of others on the command line."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 from typing import Any
+
+from toongeo.app.commands.number_types import port
 
 __all__ = ["add_model"]
 
@@ -18,9 +20,14 @@ def add_model(commands: Any) -> None:
         verb.add_argument("path", type=Path, metavar="PATH", help="a file or folder of a model")
         verb.add_argument("--format", metavar="NAME", help="of the model (default: told by its content)")
         verb.add_argument("--landmarks", type=Path, metavar="FILE", help="its 68 landmarks: .json .txt .npz .npy .pkl")
+        verb.add_argument("--expression", type=Path, metavar="FILE", help="its expressions: Exp_Pca.bin, of eos .bin")
         verb.add_argument(
             "--cache", type=Path, metavar="NPZ", help="to keep what is read from the folder of ICT-FaceKit"
         )
+        if name == "pick":
+            verb.add_argument("-o", "--output", type=Path, metavar="OUT", help=".json, .txt (default: beside it)")
+            verb.add_argument("--port", type=port, default=0, metavar="N", help="default: a free one")
+            verb.add_argument("--no-open", action="store_true", help="only print where the page is")
         if name in ("convert", "render"):
             what = ".npz" if name == "convert" else ".png, .jpg"
             verb.add_argument("-o", "--output", type=Path, required=True, metavar="OUT", help=what)
@@ -34,7 +41,13 @@ def add_model(commands: Any) -> None:
 def _loaded(options: argparse.Namespace) -> Any:
     from toongeo.model import load_model
 
-    return load_model(options.path, format=options.format, landmarks=options.landmarks, cache=options.cache)
+    return load_model(
+        options.path,
+        format=options.format,
+        landmarks=options.landmarks,
+        expression=options.expression,
+        cache=options.cache,
+    )
 
 
 def _info(options: argparse.Namespace) -> None:
@@ -83,9 +96,26 @@ def _render(options: argparse.Namespace) -> None:
     print(options.output)
 
 
+def _pick(options: argparse.Namespace) -> None:
+    from toongeo.app.picker.pick_landmarks import pick_landmarks
+
+    pick_landmarks(
+        options.path,
+        landmarks=options.landmarks,
+        output=options.output,
+        as_model=True,
+        format=options.format,
+        expression=options.expression,
+        cache=options.cache,
+        port=options.port,
+        show=not options.no_open,
+    )
+
+
 _VERBS = {
     "info": (_info, "what it has, and what it lacks"),
     "check": (_check, "what looks wrong: sides, order of landmarks, size, holes (exit code 2)"),
     "convert": (_convert, "write it as an .npz of toongeo"),
     "render": (_render, "draw its mean, modes, expressions and landmarks on one sheet"),
+    "pick": (_pick, "click its 68 landmarks in the browser, or those of a mesh"),
 }

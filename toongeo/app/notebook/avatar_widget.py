@@ -37,6 +37,18 @@ class AvatarWidget:
         If ``anywidget`` is not installed; names the package.
     ValueError
         For weights as :meth:`toongeo.Avatar.vertices`.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> avatar = tg.make_avatar(img, landmarks, hair=False)
+    >>> widget = tg.AvatarWidget(avatar, {"jawOpen": 0.5})  # the last line of a cell shows it
+    >>> widget.weights["jawOpen"]
+    0.5
+    >>> widget.weights = {"mouthSmileLeft": 1.0}
     """
 
     def __init__(self, avatar: Avatar, weights: Weights = None, *, height: int = 520, **options: Any) -> None:

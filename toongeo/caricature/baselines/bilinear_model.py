@@ -12,8 +12,8 @@ from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.caricature.baselines.linear_fit import LinearFit, equations, posed, ridge_solution
 from toongeo.geometry.one_thread import one_thread
-from toongeo.io.landmark_array import landmark_array
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["BilinearModel", "bilinear_fit"]
@@ -81,7 +81,9 @@ def _mode_vectors(mean: Floats, A: NDArray[np.float32], B: NDArray[np.float32], 
         return np.linalg.eigh(gram)[1][:, ::-1][:, :count]
 
 
-def bilinear_fit(landmarks: ArrayLike, model: MorphableModel, bilinear: BilinearModel) -> LinearFit:
+def bilinear_fit(
+    landmarks: ArrayLike, model: MorphableModel, bilinear: BilinearModel, *, scheme: str = "ibug68"
+) -> LinearFit:
     """Pose and the two coefficient vectors of least landmark error, in turns.
 
     Parameters
@@ -91,8 +93,15 @@ def bilinear_fit(landmarks: ArrayLike, model: MorphableModel, bilinear: Bilinear
     model : MorphableModel
         Its landmarks and contour lines are used.
     bilinear : BilinearModel
+    scheme : str
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
+
+    Raises
+    ------
+    ValueError
+        If the landmarks are not those of the scheme, or all are missing.
     """
-    pixels = landmark_array(landmarks)
+    pixels = ibug_landmarks(landmarks, scheme)
     seen = np.isfinite(pixels).all(axis=1)
     mean_id, mean_exp = bilinear.left.mean(axis=0), bilinear.right[0]  # the mean identity without expression
     u_id, u_exp, vertices = mean_id, mean_exp, model.landmarks

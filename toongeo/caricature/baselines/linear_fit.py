@@ -12,10 +12,10 @@ from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
-from toongeo.io.landmark_array import landmark_array
 from toongeo.model.anatomy.landmark_basis import landmark_basis
 from toongeo.model.anatomy.visible_landmarks import landmarks_seen
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.protocols import HeadCamera
 from toongeo.render.camera import ScaledOrthographicCamera
 
@@ -52,7 +52,13 @@ class LinearFit:
 
 
 def linear_fit(
-    landmarks: ArrayLike, model: MorphableModel, mean: Floats, modes: NDArray[np.float32], regularization: float
+    landmarks: ArrayLike,
+    model: MorphableModel,
+    mean: Floats,
+    modes: NDArray[np.float32],
+    regularization: float,
+    *,
+    scheme: str = "ibug68",
 ) -> LinearFit:
     """3DMM with ``E_lan + regularization * sum (alpha / sigma)^2`` (Eq. 16-18).
 
@@ -67,12 +73,19 @@ def linear_fit(
         Identity and expression, each of one standard deviation.
     regularization : float
         3000 and 0 in the paper; 0 gives the smallest coefficients among the best.
+    scheme : str
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
     LinearFit
+
+    Raises
+    ------
+    ValueError
+        If the landmarks are not those of the scheme, or all are missing.
     """
-    pixels = landmark_array(landmarks)
+    pixels = ibug_landmarks(landmarks, scheme)
     seen = np.isfinite(pixels).all(axis=1)
     V: Floats = mean
     vertices = model.landmarks

@@ -79,6 +79,21 @@ def caricature_rig(
     ------
     ValueError
         If the landmarks are malformed.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> model = tg.default_model()
+    >>> names = ("jawOpen", "mouthSmileLeft")  # two of its expressions; all of them take a quarter of a minute
+    >>> deltas = model.expression[[model.expression_index(name) for name in names]]
+    >>> few = replace(model, expression=deltas, expression_names=names, n_named=2)
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks, model=few), landmarks)
+    >>> rig = tg.caricature_rig(face, landmarks)
+    >>> rig.names, rig.deltas.shape
+    (('jawOpen', 'mouthSmileLeft'), (2, 19057, 3))
     """
     started = time.perf_counter()
     landmarks = ibug_landmarks(landmarks, scheme)

@@ -18,7 +18,7 @@ from toongeo.caricature.blendshapes.landmark_mapper import PartMapper
 from toongeo.caricature.blendshapes.sparse_expression import sparse_expression
 from toongeo.caricature.caricature_fit import CaricatureFit
 from toongeo.caricature.caricature_options import CaricatureOptions
-from toongeo.caricature.fit_caricature import refitted_skin
+from toongeo.caricature.refitted_skin import refitted_skin
 from toongeo.caricature.space.deformation_representation import deformation_representation
 from toongeo.caricature.space.face_space import FaceSpace
 from toongeo.model.anatomy.landmark_basis import landmark_basis
@@ -99,6 +99,21 @@ def initial_blendshapes(
     ------
     ValueError
         If the landmarks are malformed, or the mapper gives something else than 68 finite points.
+
+    Examples
+    --------
+    >>> from dataclasses import replace
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> model = tg.default_model()
+    >>> names = ("jawOpen", "mouthSmileLeft")  # two of its expressions; each is a fit of its own
+    >>> deltas = model.expression[[model.expression_index(name) for name in names]]
+    >>> few = replace(model, expression=deltas, expression_names=names, n_named=2)
+    >>> face = tg.exaggerate(tg.fit_3dmm(None, landmarks, model=few), 0.3)  # or tg.fit_caricature
+    >>> shapes = tg.initial_blendshapes(face, face.project(face.vertices[face.landmark_vertices]))
+    >>> shapes.vertices.shape, shapes.landmarks.shape  # the neutral face, then the expressions
+    ((3, 12606, 3), (3, 68, 2))
     """
     drawn = ibug_landmarks(landmarks, scheme)
     mapper = PartMapper(source.model) if mapper is None else mapper

@@ -49,6 +49,16 @@ class BlendshapeWeights:
     ------
     ValueError
         If one is negative or not finite, deformation, reach or saturation is zero, or the latter above 1.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.BlendshapeWeights(saturation=0.1, softness=4.0).saturation
+    0.1
+    >>> tg.BlendshapeWeights(reach=0.0)
+    Traceback (most recent call last):
+    ...
+    ValueError: reach: expected a finite number > 0, got 0.0
     """
 
     deformation: float = 1.0

@@ -13,10 +13,10 @@ from scipy.optimize import lsq_linear
 
 from toongeo.arrays import Floats
 from toongeo.geometry.one_thread import one_thread
-from toongeo.io.landmark_array import landmark_array
 from toongeo.model.ibug68 import PARTS
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.face_fit import FaceFit
+from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 
 __all__ = ["sparse_expression"]
 
@@ -32,7 +32,7 @@ _TURN, _SHIFT_MM, _SWELL = 0.1, 30.0, 0.1  # how far the pose may be off, s.d.
 _BOUND = 3.0  # of unnamed expressions
 
 
-def sparse_expression(fit: FaceFit, landmarks: ArrayLike, *, spread: float = 1.0) -> FaceFit:
+def sparse_expression(fit: FaceFit, landmarks: ArrayLike, *, spread: float = 1.0, scheme: str = "ibug68") -> FaceFit:
     """The fit with the few expressions that explain what no identity does.
 
     With the pose of ``fit`` the landmarks are linear in identity, expression and small changes of the pose. Identity
@@ -48,6 +48,8 @@ def sparse_expression(fit: FaceFit, landmarks: ArrayLike, *, spread: float = 1.0
         NaN rows are missing.
     spread : float > 0
         Standard deviation of the identity coefficients: 1 for people, more for caricatures.
+    scheme : str
+        What the landmarks are: see :func:`toongeo.ibug_landmarks`.
 
     Returns
     -------
@@ -61,7 +63,7 @@ def sparse_expression(fit: FaceFit, landmarks: ArrayLike, *, spread: float = 1.0
     """
     if not (np.isfinite(spread) and spread > 0):
         raise ValueError(f"spread: expected a finite number > 0, got {spread}")
-    pixels = landmark_array(landmarks)
+    pixels = ibug_landmarks(landmarks, scheme)
     with one_thread():
         A, B, left = _equations(fit, pixels)
         seen = np.isfinite(left)

@@ -29,8 +29,21 @@ class DeformationSpace(EncodedShapes):
 
     With weights ``w = (w_R, w_S)`` the one-ring of vertex i is deformed by
     ``T_i(w) = exp(sum_l w_R,l log R_l,i) (I + sum_l w_S,l (S_l,i - I))`` (Eq. 5): rotations turn on, where a sum of
-    displacements would swell and shear. Make it with `from_meshes`;
-    attributes are those of :class:`EncodedShapes`.
+    displacements would swell and shear. Make it with `from_meshes`.
+
+    Attributes
+    ----------
+    reference : (n, 3) float64
+        Vertices at w = 0, any unit.
+    faces : (m, 3) int64
+    rotations : (l, 3, n) float32
+        Rotation vectors of each shape, radians (Eq. 4).
+    stretches : (l, 6, n) float32
+        xx, xy, xz, yy, yz, zz of ``S - I``.
+    bends : (l, n, 3) float32
+        What the Laplacian of each shape's displacements has beyond that of its gradients.
+    offsets : (l, c, 3) float64
+        Displacement of the mean vertex of each connected component, which the gradients do not tell.
 
     Examples
     --------

@@ -35,6 +35,15 @@ class FaceSpace:
         Its reference is the model's mean at ``vertices``.
     vertices : (k,) int64
         Vertices of the model that the space deforms, ascending.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> space = tg.face_space()
+    >>> len(space.vertices) < len(space.model.mean)  # the skin alone: not what lies inside
+    True
+    >>> space.rows(space.vertices[[5, 9]])  # of vertices of the model, in the space
+    array([5, 9])
     """
 
     model: MorphableModel
@@ -74,9 +83,20 @@ def face_space(model: MorphableModel | None = None) -> FaceSpace:
     model : MorphableModel, optional
         `default_model` if None.
 
+    Returns
+    -------
+    FaceSpace
+
     References
     ----------
     Wu et al. 2018, "Alive caricature from 2D to 3D", section 5.1.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> space = tg.face_space()
+    >>> space.model is tg.default_model(), space is tg.face_space()  # kept
+    (True, True)
     """
     return _face_space(default_model() if model is None else model)
 

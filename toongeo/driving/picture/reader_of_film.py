@@ -1,4 +1,4 @@
-"""A performer's skin from a film in which no frame is known to be neutral.
+"""A performer's skin from a film in which a neutral frame is named or looked for.
 
 Constants were chosen as those of ``skin_samples``.
 """
@@ -24,8 +24,8 @@ _STEPS = (3, 2)  # of the first reading
 _AGREED = 15  # frames that say where the landmarks of the neutral face are, those of the most similar pose
 
 
-def reader_of_film(frames: Iterable[Bytes], sequence: Floats) -> SkinReader:
-    """Compares all frames with one, and then with the one of them that shows the least expression.
+def reader_of_film(frames: Iterable[Bytes], sequence: Floats, neutral: int | None = None) -> SkinReader:
+    """Compares all frames with one, and then with the one of them that shows the least expression, or is `neutral`.
 
     What landmarks (f, 68, 2) px take for the neutral frame is off by as much as the landmarks are. Read against it,
     weights go below 0 where a face is more at rest still. In the frame where their sum is least, the landmarks are the
@@ -36,7 +36,7 @@ def reader_of_film(frames: Iterable[Bytes], sequence: Floats) -> SkinReader:
     ValueError
         If no frame has enough landmarks, or the skin is not seen.
     """
-    landmarks, at = neutral_landmarks(sequence)
+    landmarks, at = neutral_landmarks(sequence) if neutral is None else (sequence[neutral], neutral)
     face = PerformerFace.of_neutral(landmarks)
     reader = SkinReader(face, _frame(frames, at), landmarks)
     chosen = set(np.linspace(0, len(sequence) - 1, _LOOKED_AT).round().astype(int)) | {at}
@@ -46,7 +46,8 @@ def reader_of_film(frames: Iterable[Bytes], sequence: Floats) -> SkinReader:
         reader.rest()
         for k in way:
             poses[k] = reader.read(greys[k], sequence[k], least=_LEAST, steps=_STEPS)
-    at = min(poses, key=lambda k: float(poses[k].weights.sum()))
+    if neutral is None:
+        at = min(poses, key=lambda k: float(poses[k].weights.sum()))
     found = {k: reader.smaller(sequence[k]) for k in poses}
     landmarks = reader.larger(_agreed(face.landmarks, poses, found, at))
     return SkinReader(PerformerFace.of_neutral(landmarks), _frame(frames, at), landmarks)

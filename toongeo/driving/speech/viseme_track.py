@@ -30,6 +30,13 @@ class VisemeTrack:
     ------
     ValueError
         If there is none, a name is unknown, or times are not finite, not in order, or last for hours.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from toongeo.driving import VisemeTrack
+    >>> VisemeTrack(("PP", "aa"), np.array([0.0, 0.1]), np.array([0.1, 0.3])).names
+    ('PP', 'aa')
     """
 
     names: tuple[str, ...]

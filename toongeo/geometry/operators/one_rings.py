@@ -42,6 +42,15 @@ class OneRings:
         Unit vectors along which each ring extends least, of either sign.
     flat : (n,) bool
         Rings that lie in a plane with all their neighbours: no edge tells the gradient along the normal.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from toongeo.geometry import one_rings
+    >>> V = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> rings = one_rings(V, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> bool(np.allclose(rings.displacement_gradients(2 * V), np.eye(3)[:, :, None]))  # T - I, twice as large
+    True
     """
 
     V: Floats

@@ -14,6 +14,15 @@ _SMALL = 1e-2  # rad; below it the closed forms cancel, and four terms of the se
 def rotation_exp(w: Floats) -> Floats:
     """Rotations (3, 3, n) by ``|w|`` radians about the vectors ``w`` (3, n): ``exp([w]x)``.
 
+    Parameters
+    ----------
+    w : (3, n) float, radians
+
+    Returns
+    -------
+    (3, 3, n) float64
+        Matrix ``[:, :, i]`` belongs to the vector ``[:, i]``.
+
     Examples
     --------
     >>> rotation_exp(np.array([[0.0], [0.0], [np.pi / 2]]))[:, :, 0].round(12) + 0.0

@@ -16,6 +16,15 @@ def rotation_log(R: NDArray[np.float64]) -> NDArray[np.float64]:
 
     ``[w]x`` is the matrix logarithm of Wu et al. 2018, Eq. 2. Of the two vectors of a half turn either may come.
 
+    Parameters
+    ----------
+    R : (3, 3, n) float
+        Rotations; not checked.
+
+    Returns
+    -------
+    (3, n) float64, radians
+
     Examples
     --------
     >>> rotation_log(np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])[:, :, None])[:, 0].round(12)

@@ -43,7 +43,10 @@ def order_doubts(points: Floats, pose: Floats) -> list[str]:
         (2, 2), the rotation layout -> points, as of :func:`frontal_pose`.
     """
     upright = points @ pose  # the face's own axes: x towards the subject's left, y down
-    backwards = [row for row in _ROWS if _runs_backwards(upright, row[0], row[1])]
+    along, possible = _along(upright)
+    backwards = [
+        row for row in _ROWS if np.nansum(along[row[0] : row[1]]) < _BACKWARDS * np.nansum(possible[row[0] : row[1]])
+    ]
     doubts = []
     for part in _exchanged_parts(upright):
         all_rows, turned = (sum(row[2] == part for row in some) for some in (_ROWS, backwards))
@@ -60,11 +63,11 @@ def order_doubts(points: Floats, pose: Floats) -> list[str]:
     return doubts
 
 
-def _runs_backwards(upright: Floats, first: int, last: int) -> bool:
-    steps, expected = (np.diff(shape[first : last + 1], axis=0) for shape in (upright, frontal_layout().points))
-    along = np.einsum("ij,ij->i", steps, expected)
+def _along(upright: Floats) -> tuple[Floats, Floats]:
+    """How far (67,) each point is from the one before it along the layout's step, and how far it could be."""
+    steps, expected = (np.diff(shape, axis=0) for shape in (upright, frontal_layout().points))
     possible = np.linalg.norm(steps, axis=1) * np.linalg.norm(expected, axis=1)
-    return bool(np.nansum(along) < _BACKWARDS * np.nansum(possible))
+    return np.einsum("ij,ij->i", steps, expected), possible
 
 
 def _exchanged_parts(upright: Floats) -> list[str]:

@@ -34,6 +34,14 @@ class LandmarkFile:
         How many the file holds; faces: in that frame.
     message
         All of this in a sentence for people, and what was guessed.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> file = tg.read_landmark_file(data_path("examples/portraits/moustache_man.pts"))
+    >>> file.points.shape, file.scheme, file.frames
+    ((68, 2), 'ibug68', 1)
     """
 
     points: NDArray[np.float64]
@@ -78,6 +86,10 @@ def read_landmark_file(
         them; the middle of the first pixel is 0.
     one_based
         Whether 1 must be subtracted; None: as the format has it (``.pts``).
+
+    Returns
+    -------
+    LandmarkFile
 
     Raises
     ------

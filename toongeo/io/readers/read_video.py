@@ -66,6 +66,19 @@ def read_video(path: str | os.PathLike[str]) -> Video:
         If the file cannot be read.
     ValueError
         If it is no video or empty, none of its frames can be decoded, or there is only one, as in a picture.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import cv2
+    >>> import toongeo as tg
+    >>> film = cv2.VideoWriter("film.avi", cv2.VideoWriter_fourcc(*"MJPG"), 25, (64, 48))
+    >>> for k in range(5):
+    ...     _ = film.write(np.full((48, 64, 3), 50 * k, dtype=np.uint8))
+    >>> film.release()
+    >>> video = tg.read_video("film.avi")
+    >>> video.fps, [frame.shape for frame in video][:2]
+    (25.0, [(48, 64, 3), (48, 64, 3)])
     """
     path = Path(path)
     check_file(path, _MOST_MB)

@@ -36,6 +36,15 @@ def write_landmarks(path: str | os.PathLike[str], landmarks: ArrayLike) -> None:
         If the suffix is unknown or ``landmarks`` is not (68, 2), holds infinity or nothing but NaN.
     OSError
         If the path cannot be written.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> points = np.arange(136.0).reshape(68, 2)
+    >>> tg.write_landmarks("face.pts", points)
+    >>> bool((tg.read_landmarks("face.pts") == points).all())
+    True
     """
     points = landmark_array(landmarks)
     suffix = Path(path).suffix.lower()

@@ -36,6 +36,8 @@ class LandmarkBasis:
         Faces around the lines, as gathered rows.
     outer_eye_mm : float
         Distance of the outer eye corners of the mean face: the unit of the landmark loss.
+    model : MorphableModel
+        Whose rows these are.
     """
 
     landmarks: NDArray[np.int64]
@@ -47,14 +49,17 @@ class LandmarkBasis:
     line_starts: NDArray[np.int64]
     fan: NDArray[np.int64]
     outer_eye_mm: float
+    model: MorphableModel
 
     def rows(self, vertices: NDArray[np.int64]) -> NDArray[np.int64]:
         """Gathered rows of vertices that were gathered."""
         return np.searchsorted(self.vertices, vertices)
 
     def at(self, vertices: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Mean (v, 3) and modes (3 v, c) of gathered vertices (v,)."""
-        rows = self.rows(vertices)
+        """Mean (v, 3) and modes (3 v, c) of vertices (v,), quickly where they were gathered."""
+        rows = np.minimum(self.rows(vertices), len(self.vertices) - 1)
+        if not np.array_equal(self.vertices[rows], vertices):  # a jaw point on the silhouette may lie anywhere
+            return self.model.mean[vertices], _modes(self.model, vertices)
         modes = self.modes.reshape(len(self.mean), 3, -1)[rows]
         return self.mean[rows], modes.reshape(3 * len(rows), -1)
 
@@ -83,16 +88,22 @@ def landmark_basis(model: MorphableModel) -> LandmarkBasis:
     is_on_line[on_lines] = True
     fan = model.faces[is_on_line[model.faces].any(axis=1)]
     vertices = np.unique(np.concatenate([model.landmarks, on_lines, fan.ravel()]))
-    modes = np.concatenate([model.identity[:, vertices], model.expression[:, vertices]])
     right, left = (model.mean[model.landmarks[k]] for k in OUTER_EYES)
     return LandmarkBasis(
         landmarks=model.landmarks,
         lines=tuple(model.contour_lines),
         vertices=vertices,
         mean=model.mean[vertices],
-        modes=np.ascontiguousarray(modes.transpose(1, 2, 0).reshape(3 * len(vertices), -1), dtype=np.float64),
+        modes=_modes(model, vertices),
         line_rows=np.searchsorted(vertices, on_lines),
         line_starts=np.cumsum([0, *map(len, model.contour_lines[:-1])]),
         fan=np.searchsorted(vertices, fan),
         outer_eye_mm=float(np.linalg.norm(left - right)),
+        model=model,
     )
+
+
+def _modes(model: MorphableModel, vertices: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Modes (3 v, c) at vertices (v,)."""
+    modes = np.concatenate([model.identity[:, vertices], model.expression[:, vertices]])
+    return np.ascontiguousarray(modes.transpose(1, 2, 0).reshape(3 * len(vertices), -1), dtype=np.float64)

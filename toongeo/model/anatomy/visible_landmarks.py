@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.geometry.operators.cross import cross
 from toongeo.model.anatomy.landmark_basis import LandmarkBasis
 from toongeo.model.ibug68 import PARTS
 
@@ -47,8 +48,8 @@ def landmarks_seen(
 
 def _towards(X: NDArray[np.float64], faces: NDArray[np.int64], view: NDArray[np.float64]) -> NDArray[np.float64]:
     """Component along ``view`` of the area-weighted vertex normals; only its sign is meant."""
-    a = X[faces[:, 0]]
-    along = np.cross(X[faces[:, 1]] - a, X[faces[:, 2]] - a) @ view
+    a, b, c = X.T[:, faces.T].transpose(1, 0, 2)
+    along = view @ cross(b - a, c - a)
     return np.bincount(faces.ravel(), np.repeat(along, 3), len(X)).astype(np.float64)
 
 

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from toongeo.io import read_mesh_landmarks
 from toongeo.model.ibug68 import PARTS
-from toongeo.model.loaders.files.read_npz import npz_names, read_npz
 from toongeo.model.loaders.files.read_pickle import plain, unpickled
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.outline_paths import outline_landmarks
+from toongeo.reading.promise import promise
+from toongeo.reading.read_npz import read_npz
 
 __all__ = ["read_landmark_vertices", "with_landmark_file"]
 
@@ -54,7 +54,7 @@ def read_landmark_vertices(path: Path, model: MorphableModel) -> NDArray[np.int6
     ValueError
         If it is none of these, or holds other than 51 or 68 landmarks of the model.
     """
-    with refusing(path, "a table of 68 landmarks"):
+    with promise(path, "a table of 68 landmarks", "landmarks", alone=True):
         if path.suffix in (".json", ".txt", ".csv", ".pp", ".ljson"):
             points = read_mesh_landmarks(path, model.mean)
             if not np.isfinite(points).all():
@@ -80,7 +80,7 @@ def _nearest(points: NDArray[np.float64], model: MorphableModel) -> NDArray[np.i
 
 def _table(path: Path) -> dict[str, Any]:
     if path.suffix == ".npz":
-        return dict(read_npz(path, npz_names(path)))
+        return read_npz(path, expected="a table of 68 landmarks", argument="landmarks")
     content = path.read_bytes()
     if path.suffix == ".npy":  # an array of one object: behind its header stands a pickle
         length = int.from_bytes(content[8:10], "little")

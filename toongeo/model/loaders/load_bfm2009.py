@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.model.loaders.exp_pca import ExpPca, read_exp_pca, trimmed_faces
 from toongeo.model.loaders.files.read_mat import mat_names, read_mat
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
 
 __all__ = ["is_bfm2009", "load_bfm2009"]
 
@@ -27,7 +28,9 @@ def is_bfm2009(path: Path) -> bool:
     return names >= set(_ORIGINAL) or names >= set(_DEEP3D) or "model" in names
 
 
-def load_bfm2009(path: str | Path, landmarks: NDArray[np.int64] | None = None) -> MorphableModel:
+def load_bfm2009(
+    path: str | Path, landmarks: NDArray[np.int64] | None = None, expression: str | Path | None = None
+) -> MorphableModel:
     """``01_MorphableModel.mat``; face3d's ``BFM.mat``; Deep3D's ``BFM_model_front.mat``.
 
     A unit of a mode becomes one standard deviation (``EV`` of these files are standard deviations; Deep3D's bases
@@ -39,6 +42,9 @@ def load_bfm2009(path: str | Path, landmarks: NDArray[np.int64] | None = None) -
     path : str or Path
     landmarks : (68,) int, optional
         Vertices from 0, in place of the file's.
+    expression : str or Path, optional
+        ``Exp_Pca.bin``, expressions for the original, with what lies beside it: see :func:`read_exp_pca`. The model
+        then has the 53,215 vertices that these move, in their order.
 
     Raises
     ------
@@ -51,8 +57,12 @@ def load_bfm2009(path: str | Path, landmarks: NDArray[np.int64] | None = None) -
     "Accurate 3D face reconstruction with weakly-supervised learning", CVPRW 2019.
     """
     path = Path(path)
-    with refusing(path, "a Basel Face Model of 2009"):
+    extra = None if expression is None else read_exp_pca(Path(expression))
+    with promise(path, "a Basel Face Model of 2009", alone=True):
         z: dict[str, Any] = read_mat(path, (*_ORIGINAL, *_DEEP3D, *_COLOURS[0], *_COLOURS[1], "keypoints", "model"))
+        has_its_own = isinstance(z.get("model"), dict) or all(name in z for name in _DEEP3D)
+        if expression is not None and has_its_own:
+            raise ValueError(f"{path}: expected the original model to go with expression, got one that has its own")
         if isinstance(z.get("model"), dict):
             return _face3d(z["model"], landmarks)
         if all(name in z for name in _DEEP3D):
@@ -60,14 +70,28 @@ def load_bfm2009(path: str | Path, landmarks: NDArray[np.int64] | None = None) -
         missing = [name for name in _ORIGINAL if name not in z]
         if missing:
             raise ValueError(f"{path}: expected the arrays {', '.join(_ORIGINAL)}, without {', '.join(missing)}")
-        return MorphableModel.from_arrays(
-            _points(z["shapeMU"]),
-            _from_one(z["tl"], 3),
-            identity=_modes(z["shapePC"], z["shapeEV"]),
-            landmarks=landmarks,
-            unit=_MICROMETRES,
-            **_colours(z),
-        )
+        return _original(z, landmarks, extra)
+
+
+def _original(z: dict[str, Any], landmarks: NDArray[np.int64] | None, extra: ExpPca | None) -> MorphableModel:
+    mean, faces, identity = _points(z["shapeMU"]), _from_one(z["tl"], 3), _modes(z["shapePC"], z["shapeEV"])
+    colours = _colours(z)
+    if extra is not None:
+        kept = extra.vertices
+        if kept.max(initial=0) >= len(mean) or not 0 <= faces.min(initial=0) <= faces.max(initial=0) < len(mean):
+            raise ValueError(f"vertices are not all in 0..{len(mean) - 1}")
+        faces = trimmed_faces(faces, kept, len(mean))
+        mean, identity = mean[kept], identity[:, kept]
+        colours = {name: np.take(values, kept, axis=-2) for name, values in colours.items()}
+    return MorphableModel.from_arrays(
+        mean,
+        faces,
+        identity=identity,
+        expression=None if extra is None else extra.modes,
+        landmarks=landmarks,
+        unit=_MICROMETRES,
+        **colours,
+    )
 
 
 def _face3d(z: dict[str, NDArray], landmarks: NDArray[np.int64] | None) -> MorphableModel:

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.model.ibug68 import PARTS
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.outline_paths import outline_landmarks, outline_paths
 from toongeo.reading.check_file import file_bytes
+from toongeo.reading.promise import promise
 
 __all__ = ["load_eos"]
 
@@ -47,6 +47,10 @@ def load_eos(
         ``sfm_model_contours.json``: vertices of the right and the left outline, on which eos looks for the nearest.
         They are regions here, ``contour_right`` and ``contour_left``.
 
+    Returns
+    -------
+    MorphableModel
+
     Raises
     ------
     ValueError
@@ -55,20 +59,31 @@ def load_eos(
     References
     ----------
     P. Huber et al., "A multiresolution 3D morphable face model and fitting framework", VISAPP 2016.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.load_eos("sfm_shape_3448.bin", "ibug_to_sfm.txt")  # doctest: +SKIP
+    >>> from pathlib import Path
+    >>> size = Path("other.bin").write_bytes(bytes(3))
+    >>> tg.load_eos("other.bin", "other.txt")
+    Traceback (most recent call last):
+    ...
+    ValueError: other.bin: expected a binary file of eos, it ends at byte 3
     """
-    with refusing(Path(shape), "a shape model of eos"):
+    with promise(Path(shape), "a shape model of eos", "shape", alone=True):
         mean, modes, faces, uv = _shape_model(_Reader(Path(shape)))
-    with refusing(Path(landmarks), "a table of landmarks of eos"):
+    with promise(Path(landmarks), "a table of landmarks of eos", "landmarks", alone=True):
         table = _landmark_table(Path(landmarks), len(mean))
     blendshapes: dict[str, NDArray[np.float32]] = {}
     if expression is not None:
-        with refusing(Path(expression), "blendshapes of eos"):
+        with promise(Path(expression), "blendshapes of eos", "expression", alone=True):
             blendshapes = _blendshapes(_Reader(Path(expression)), len(mean))
     regions = {}
     if contours is not None:
-        with refusing(Path(contours), "contours of eos"):
+        with promise(Path(contours), "contours of eos", "contours", alone=True):
             regions = _contours(Path(contours), len(mean))
-    with refusing(Path(shape), "a shape model of eos"):
+    with promise(Path(shape), "a shape model of eos", "shape", alone=True):
         points = np.zeros(68, np.int64)
         points[list(table)] = list(table.values())
         uv_parts = {"uv": uv, "uv_faces": faces} if len(uv) else {}

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.loaders.files.read_npz import npz_names, read_npz
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
+from toongeo.reading.read_npz import npz_names, read_npz
 
 __all__ = ["is_facescape", "load_facescape"]
 
@@ -49,9 +49,8 @@ def load_facescape(path: str | Path, landmarks: NDArray[np.int64] | None = None)
     H. Yang et al., "FaceScape: a large-scale high quality 3D face dataset", CVPR 2020.
     """
     path = Path(path)
-    present = npz_names(path)
-    z = read_npz(path, _KEYS, [name for name in _MORE if name in present])
-    with refusing(path, "FaceScape's bilinear model"):
+    z = read_npz(path, _KEYS, _MORE, expected="FaceScape's bilinear model")
+    with promise(path, "FaceScape's bilinear model", alone=True):
         core = z["shape_bm_core"]
         if core.ndim != 3 or len(core) % 3 or min(core.shape[1:]) < 1:
             raise ValueError(f"expected shape_bm_core (3 n, expressions, identities), got {core.shape}")

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.io import read_obj
-from toongeo.model.loaders.files.read_npz import npz_names, read_npz
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.loaders.principal_modes import principal_modes
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
+from toongeo.reading.read_npz import npz_names, read_npz
 
 __all__ = ["is_facewarehouse", "load_facewarehouse", "testers"]
 
@@ -54,11 +54,11 @@ def load_facewarehouse(path: str | Path, landmarks: NDArray[np.int64] | None = N
     C. Cao et al., "FaceWarehouse: a 3D facial expression database for visual computing", TVCG 2014.
     """
     path = Path(path)
-    with refusing(path, "FaceWarehouse"):
+    with promise(path, "FaceWarehouse", alone=True):
         if path.is_dir():
             tensor, z = _folder(path)
         else:
-            z = read_npz(path, _KEYS, _MORE)
+            z = read_npz(path, _KEYS, _MORE, expected="FaceWarehouse")
             tensor = z["tensor"]
         if tensor.ndim != 4 or tensor.shape[3] != 3 or min(tensor.shape[:2]) < 1:
             raise ValueError(f"expected a tensor (people, expressions, n, 3), got {tensor.shape}")

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.loaders.files.read_npz import npz_names, read_npz
 from toongeo.model.loaders.files.read_pickle import plain, unpickled
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.skinning import Skinning
+from toongeo.reading.promise import promise
+from toongeo.reading.read_npz import npz_names, read_npz
 
 __all__ = ["is_flame", "load_flame"]
 
@@ -55,7 +55,7 @@ def load_flame(path: str | Path, landmarks: NDArray[np.int64] | None = None) -> 
     T. Li et al., "Learning a model of facial shape and expression from 4D scans", SIGGRAPH Asia 2017.
     """
     path = Path(path)
-    with refusing(path, "FLAME"):
+    with promise(path, "FLAME", alone=True):
         z = _arrays(path)
         mean = np.asarray(z["v_template"], np.float64)
         shapes = np.moveaxis(np.asarray(z["shapedirs"], np.float32), 2, 0)
@@ -80,7 +80,7 @@ def load_flame(path: str | Path, landmarks: NDArray[np.int64] | None = None) -> 
 
 def _arrays(path: Path) -> dict[str, NDArray]:
     if path.suffix == ".npz":
-        return read_npz(path, _KEYS)
+        return read_npz(path, _KEYS, expected="FLAME")
     content: Any = unpickled(path.read_bytes())
     if not isinstance(content, dict):
         raise ValueError(f"{path}: expected a dictionary of arrays, got {type(content).__name__}")

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.loaders.files.read_npz import npz_names, read_npz
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
+from toongeo.reading.read_npz import npz_names, read_npz
 
 __all__ = ["is_gnm", "load_gnm"]
 
@@ -54,8 +54,8 @@ def load_gnm(path: str | Path, landmarks: NDArray[np.int64] | None = None) -> Mo
     "GNM Head: a generative anthropometric model of the human head", 2026.
     """
     path = Path(path)
-    z = read_npz(path, _KEYS, _MORE)
-    with refusing(path, "GNM"):
+    z = read_npz(path, _KEYS, _MORE, expected="GNM")
+    with promise(path, "GNM", alone=True):
         names = [str(name) for name in z.get("expression_names", ())]
         quads = z.get("quads")
         return MorphableModel.from_arrays(

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.loaders.files.read_npz import npz_names, read_npz
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
+from toongeo.reading.read_npz import npz_names, read_npz
 
 __all__ = ["ict_model", "is_ict_facekit", "load_ict_facekit", "own_name", "packed_ict"]
 
@@ -36,6 +36,10 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
         ``identity_q (k, v, 3)`` and ``expression_q (e, v, 3)`` as integers with their ``*_scale`` (k,) and (e,),
         ``expression_names`` and ``landmarks68``.
 
+    Returns
+    -------
+    MorphableModel
+
     Raises
     ------
     ValueError
@@ -44,10 +48,21 @@ def load_ict_facekit(path: str | Path) -> MorphableModel:
     References
     ----------
     R. Li et al., "Learning formation of physically-based face attributes", CVPR 2020 (ICT-FaceKit, MIT license).
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.load_ict_facekit("ict.npz")  # doctest: +SKIP
+    >>> import numpy as np
+    >>> np.savez("other.npz", neutral=np.zeros((4, 3)))
+    >>> tg.load_ict_facekit("other.npz")  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    ValueError: other.npz: expected the arrays ...
     """
     path = Path(path)
-    z: dict[str, Any] = dict(read_npz(path, _KEYS))
-    with refusing(path, "an archive of ICT-FaceKit"):
+    z: dict[str, Any] = dict(read_npz(path, _KEYS, expected="an archive of ICT-FaceKit"))
+    with promise(path, "an archive of ICT-FaceKit", alone=True):
         for kind in ("identity", "expression"):
             integers, scale = z.pop(f"{kind}_q"), z.pop(f"{kind}_scale")
             if integers.ndim != 3 or scale.shape != integers.shape[:1] or integers.shape[1:] != z["neutral"].shape:

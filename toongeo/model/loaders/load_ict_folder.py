@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from toongeo.io import atomic_write, read_obj
 from toongeo.model.loaders.files.obj_vertices import obj_vertices
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.loaders.load_ict_facekit import ict_model, load_ict_facekit, packed_ict
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
 
 __all__ = ["ict_folder", "load_ict_folder"]
 
@@ -51,7 +51,7 @@ def load_ict_folder(path: str | Path, cache: str | Path | None = None) -> Morpha
     if cache is not None and Path(cache).is_file():
         return load_ict_facekit(cache)
     path = Path(path)
-    with refusing(path, "the folder of ICT-FaceKit"):
+    with promise(path, "the folder of ICT-FaceKit", alone=True):
         folder = ict_folder(path)
         if folder is None:
             raise ValueError(f"{path}: expected {_NEUTRAL} in it or in FaceXModel, got none")

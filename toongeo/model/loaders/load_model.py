@@ -69,7 +69,8 @@ def load_model(
         in the frame of the loaded model, or the embeddings of FLAME and GNM (``.npz``, ``.npy``, ``.pkl``).
         Contour lines are then found from the shape. For ``eos`` the ``[landmark_mappings]`` of a text file.
     expression : str or Path, optional
-        ``eos``: the blendshapes of a ``.bin`` that has none beside it.
+        ``eos``: the blendshapes of a ``.bin`` that has none beside it. ``bfm2009``: ``Exp_Pca.bin``, expressions for
+        the original, with ``std_exp.txt`` and ``BFM_exp_idx.mat`` beside it; only the vertices that they move are kept.
     cache : str or Path, optional
         ``ict``: an ``.npz`` that is written the first time that the folder is read, and read from then on. Nothing is
         written unless it is given.
@@ -102,7 +103,9 @@ def load_model(
         raise ValueError(f"format: expected one of {', '.join(FORMATS)}, got {format!r}")
     if kind == "eos":
         return _eos(path, landmarks, expression)
-    model = _loaded(path, kind, cache)
+    if expression is not None and kind != "bfm2009":
+        raise ValueError(f"expression: expected a model of eos or the Basel Face Model of 2009, got {kind}")
+    model = _loaded(path, kind, cache) if expression is None else load_bfm2009(path, None, expression)
     if landmarks is None:
         return model
     found = model.with_landmarks(read_landmark_vertices(Path(landmarks), model))

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.io import ObjData, read_glb, read_obj
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.loaders.principal_modes import principal_modes
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.promise import promise
 
 __all__ = ["load_shapes"]
 
@@ -46,7 +46,7 @@ def load_shapes(
     path = Path(path)
     if kind not in ("auto", "blendshapes", "people"):
         raise ValueError(f"kind: expected 'auto', 'blendshapes' or 'people', got {kind!r}")
-    with refusing(path, "meshes of one topology"):
+    with promise(path, "meshes of one topology", alone=True):
         if path.is_dir():
             return _folder(path, landmarks, kind)
         return _glb(path, landmarks)

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from toongeo.io import atomic_write
 from toongeo.model.eyeball_template import EyeballTemplate
 from toongeo.model.face_prior import FacePrior
-from toongeo.model.loaders.files.read_npz import npz_names, read_npz
-from toongeo.model.loaders.files.refusing import refusing
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.skinning import Skinning
+from toongeo.reading.promise import promise
+from toongeo.reading.read_npz import npz_names, read_npz
 
 __all__ = ["is_own_model", "load_own_model", "save_model"]
 
@@ -51,6 +51,13 @@ def save_model(model: MorphableModel, path: str | Path) -> None:
         If the name does not end in ``.npz``.
     OSError
         If it cannot be written; what was there before stays.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.save_model(tg.default_model(), "head.npz")
+    >>> bool((tg.load_model("head.npz").mean == tg.default_model().mean).all())
+    True
     """
     path = Path(path)
     if path.suffix != ".npz":
@@ -93,8 +100,8 @@ def load_own_model(path: Path) -> MorphableModel:
     ValueError
         If it is none, of a later version, sizes do not fit, numbers are not finite or indices out of range.
     """
-    with refusing(path, "a model of toongeo"):
-        z = read_npz(path, npz_names(path))
+    with promise(path, "a model of toongeo", alone=True):
+        z = read_npz(path, expected="a model of toongeo")
         header = json.loads(str(z[_KEY][()]))
         if header["version"] != _VERSION:
             raise ValueError(f"{path}: expected version {_VERSION} of a model, got {header['version']}")

@@ -71,6 +71,21 @@ class AlignedFace:
     fit : FaceFit
         The coarse fit from which the face was deformed; with less of its expression where that folds the skin.
     report : AlignReport
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> face.vertices.shape, face.faces.shape  # mm; triangles
+    ((19057, 3), (37568, 3))
+    >>> reached = face.project(face.vertices[face.landmark_vertices])  # px
+    >>> bool(abs(reached - landmarks).max() < 0.1)  # px
+    True
+    >>> int(face.region("lips").sum()) > 0
+    True
     """
 
     vertices: np.ndarray
@@ -160,6 +175,20 @@ def align_face(
     ValueError
         If landmarks have another shape, hold infinities or are all missing, the weight is negative or not finite, or
         the Laplacian, the depth rule or the noise is unknown.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> fit = tg.fit_3dmm(None, landmarks)
+    >>> face = tg.align_face(fit, landmarks)
+    >>> reached = face.project(face.vertices[face.landmark_vertices])  # px
+    >>> bool(abs(reached - landmarks).max() < 0.1)
+    True
+    >>> face.vertices.shape == fit.vertices.shape
+    True
     """
     started = time.perf_counter()
     given = ibug_landmarks(landmarks, scheme)

@@ -43,6 +43,18 @@ def fit_cranium(face: AlignedFace, parse: FaceParse) -> AlignedFace:
     ------
     ValueError
         If the parse shows no head.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> fit = tg.fit_3dmm(None, landmarks)
+    >>> face = tg.align_face(fit, landmarks)
+    >>> lower = tg.fit_cranium(face, tg.parse_face(img, landmarks, fit))
+    >>> bool(lower.vertices[:, 1].max() <= face.vertices[:, 1].max() + 1e-9)
+    True
     """
     head = parse.labels != FaceLabel.BACKGROUND
     if not head.any():

@@ -102,6 +102,20 @@ def adjust_coefficients(
     References
     ----------
     Pan et al. 2024, "Generating animatable 3D cartoon faces from single portraits", Eq. 7-8, Table 2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> fit = tg.fit_3dmm(None, landmarks)
+    >>> nearer = tg.adjust_coefficients(fit, landmarks, "expression")
+    >>> def miss(fit):
+    ...     return np.linalg.norm(fit.project(fit.vertices[fit.landmark_vertices]) - landmarks, axis=1).mean()
+    ...
+    >>> bool(miss(nearer) < miss(fit))
+    True
     """
     started = time.perf_counter()
     if adjust not in ADJUSTMENTS:

@@ -120,6 +120,20 @@ class FaceFit:
     light : (9, 3) float64 or None
         Radiance in spherical harmonics, camera frame, for `toongeo.render.irradiance`.
     photometric : PhotometricReport or None
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> fit = tg.fit_3dmm(None, landmarks)
+    >>> fit.vertices.shape, fit.identity.shape, fit.expression.shape
+    ((19057, 3), (81,), (64,))
+    >>> fit.project(fit.vertices[fit.landmark_vertices]).shape  # px
+    (68, 2)
+    >>> fit.save("fit.npz")
+    >>> bool((tg.FaceFit.load("fit.npz").vertices == fit.vertices).all())
+    True
     """
 
     identity: NDArray[np.float64]

@@ -29,6 +29,16 @@ class PriorOptions:
     ------
     ValueError
         If one of them is not a positive finite number.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.FitOptions(prior=tg.PriorOptions(identity_weight=0.5)).prior.max_deviation  # likeness before likelihood
+    3.0
+    >>> tg.PriorOptions(max_deviation=0.0)
+    Traceback (most recent call last):
+    ...
+    ValueError: max_deviation: expected a finite number > 0, got 0.0
     """
 
     identity_weight: float = 1.0
@@ -59,6 +69,17 @@ class JawOptions:
     ------
     ValueError
         If a number is negative or not finite, or the tangent greater than 1.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> options = tg.FitOptions(jaw=tg.JawOptions(weight=0.2))  # trust the points of the jaw more
+    >>> options.jaw.tangent
+    0.35
+    >>> tg.JawOptions(tangent=2.0)
+    Traceback (most recent call last):
+    ...
+    ValueError: tangent: expected a number in [0, 1], got 2.0
     """
 
     weight: float = 0.015
@@ -90,6 +111,16 @@ class SolverOptions:
     ------
     ValueError
         If a limit is not positive, or a count no integer.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.FitOptions(solver=tg.SolverOptions(max_passes=1)).solver.max_evaluations
+    2000
+    >>> tg.SolverOptions(max_passes=0)
+    Traceback (most recent call last):
+    ...
+    ValueError: max_passes: expected an integer >= 1, got 0
     """
 
     max_passes: int = 4

@@ -23,6 +23,11 @@ def ibug_landmarks(landmarks: ArrayLike, scheme: str = "ibug68") -> NDArray[np.f
         (60, 64) either; ``"openpose70"``, ``"wflw98"``, ``"lapa106"``, ``"sensetime106"``, ``"insightface106"``,
         ``"wholebody133"``, and ``"mediapipe478"`` (or 468), of which tables in ``data_templates/`` take 68 points.
 
+    Returns
+    -------
+    (68, 2) float64, px
+        iBUG-68 order; rows that the scheme does not tell are NaN.
+
     Raises
     ------
     ValueError

@@ -81,6 +81,16 @@ def photometric_fit(
     Pan et al. 2024, "Generating animatable 3D cartoon faces from single portraits", section 3.1, Eq. 1-6.
     Frozen visibility: V. Blanz, T. Vetter, "A morphable model for the synthesis of 3D faces", SIGGRAPH
     1999.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/astronaut.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/astronaut.pts"))
+    >>> fit = tg.photometric_fit(img, tg.fit_3dmm(None, landmarks), landmarks)
+    >>> fit.albedo.shape, fit.light.shape
+    ((9,), (9, 3))
     """
     started = time.perf_counter()
     check_image(img)

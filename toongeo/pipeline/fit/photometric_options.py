@@ -51,6 +51,16 @@ class PhotometricOptions:
     ------
     ValueError
         If one of them is not a finite positive number.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> tg.PhotometricOptions(independent_samples=100.0, passes=8).passes  # for clean photographs of people
+    8
+    >>> tg.PhotometricOptions(blur=0.0)
+    Traceback (most recent call last):
+    ...
+    ValueError: blur: expected a finite number > 0, got 0.0
     """
 
     independent_samples: float = 20.0

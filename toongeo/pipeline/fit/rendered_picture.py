@@ -38,6 +38,16 @@ def rendered_picture(
     ------
     ValueError
         If the fit has no albedo and light.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/astronaut.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/astronaut.pts"))
+    >>> fit = tg.photometric_fit(img, tg.fit_3dmm(None, landmarks), landmarks)
+    >>> tg.rendered_picture(fit, img.shape).shape
+    (512, 512, 3)
     """
     size = (int(shape[0]), int(shape[1]))
     shading: Shading = "lit" if lit else "unlit"

@@ -31,6 +31,17 @@ def residual_map(img: NDArray[np.uint8], fit: FaceFit) -> NDArray[np.float32]:
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, or the fit has no albedo and light.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/astronaut.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/astronaut.pts"))
+    >>> fit = tg.photometric_fit(img, tg.fit_3dmm(None, landmarks), landmarks)
+    >>> bool(np.nanmean(abs(tg.residual_map(img, fit))) < 0.15)  # sRGB, 0..1
+    True
     """
     check_image(img)
     surface = face_surface(fit)

@@ -42,6 +42,18 @@ class RidgeRegressor:
     weights : (f, c) float
         From features to identity and expression.
     offset : (c,) float
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> regressor = tg.train_ridge_regressor(tg.default_model(), np.random.default_rng(0), 100)
+    >>> guess = regressor(None, landmarks)
+    >>> guess.identity.shape, guess.expression.shape
+    ((81,), (64,))
+    >>> fit = tg.fit_3dmm(None, landmarks, regressor=regressor)  # the fit starts there
     """
 
     model: MorphableModel
@@ -88,6 +100,10 @@ def train_ridge_regressor(
     ridge : float > 0
         Weight of the squared coefficients against the mean squared error.
 
+    Returns
+    -------
+    RidgeRegressor
+
     Raises
     ------
     ValueError
@@ -96,6 +112,17 @@ def train_ridge_regressor(
     References
     ----------
     A. E. Hoerl, R. W. Kennard, "Ridge regression", Technometrics 12, 1970.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> model = tg.default_model()
+    >>> regressor = tg.train_ridge_regressor(model, np.random.default_rng(0), 100)
+    >>> regressor(None, landmarks).identity.shape
+    (81,)
     """
     if n < 2:
         raise ValueError(f"n: expected at least 2 faces, got {n}")

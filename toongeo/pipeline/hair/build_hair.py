@@ -47,6 +47,19 @@ def build_hair(img: NDArray[np.uint8], face: AlignedFace, rig: Rig, mask: NDArra
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, or the mask is not of its size or shows no hair on the head.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig = tg.build_rig(face)
+    >>> hair = tg.find_hair(img, landmarks, face.fit)
+    >>> face, rig = tg.make_room(face, rig, hair.mask)
+    >>> tg.build_hair(img, face, rig, hair.mask).vertices.shape[1]
+    3
     """
     check_image(img)
     if mask.shape != img.shape[:2] or mask.dtype != np.bool_:

@@ -30,6 +30,16 @@ class Hair:
     ------
     ValueError
         If shapes do not fit, an index is out of range, or a number is not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+    >>> faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])  # a tuft
+    >>> hair = tg.Hair(vertices, faces, vertices[:, :2], faces, np.zeros((8, 8, 3), dtype=np.uint8))
+    >>> hair.faces.shape
+    (4, 3)
     """
 
     vertices: np.ndarray

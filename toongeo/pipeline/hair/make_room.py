@@ -48,6 +48,18 @@ def make_room(face: AlignedFace, rig: Rig, mask: Mask, parse: FaceParse | None =
     -------
     face, rig
         Both moved by the same displacement; what the picture shows of the face stays where it is.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> hair = tg.find_hair(img, landmarks, face.fit)
+    >>> narrower, rig = tg.make_room(face, tg.build_rig(face), hair.mask)
+    >>> narrower.vertices.shape == face.vertices.shape
+    True
     """
     plane = working_plane(face, mask)
     F, model = face.faces, face.model

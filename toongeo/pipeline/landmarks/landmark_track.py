@@ -54,6 +54,18 @@ class LandmarkTrack:
     lost : (f,) bool
     times : (f,) float64, s
         Increasing.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> track = tg.track_landmarks([img, img])
+    >>> track.points.shape, track.lost, track.times
+    ((2, 68, 2), array([False, False]), array([0.        , 0.03333333]))
+    >>> track.seen.shape  # NaN where the face is lost
+    (2, 68, 2)
     """
 
     points: NDArray[np.float64]

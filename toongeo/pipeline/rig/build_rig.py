@@ -50,6 +50,19 @@ def build_rig(face: AlignedFace, *, gain: float | Literal["auto"] = 1.0) -> Rig:
     ------
     ValueError
         If the gain is neither "auto" nor a positive number, or the face has other vertices than its model.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig = tg.build_rig(face)
+    >>> len(rig.names), rig.deltas.shape
+    (46, (46, 19057, 3))
+    >>> chin = face.model.landmarks[8]
+    >>> bool(rig.vertices({"jawOpen": 1.0})[chin, 1] < rig.neutral[chin, 1])
+    True
     """
     started = time.perf_counter()
     if gain != "auto" and not (isinstance(gain, float | int) and 0 < gain < np.inf):

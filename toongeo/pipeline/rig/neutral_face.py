@@ -50,6 +50,16 @@ def neutral_face(face: AlignedFace) -> AlignedFace:
     -------
     AlignedFace
         Its ``fit`` has the rest of the expression. The same object, if there is nothing to close or remove.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> at_rest = tg.neutral_face(face)
+    >>> at_rest.vertices.shape
+    (19057, 3)
     """
     return _closed(face) if face.model.has(*NEEDS) else _without_expression(face)
 

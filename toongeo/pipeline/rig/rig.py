@@ -64,6 +64,21 @@ class Rig:
     pose : (k,) float64
         Weights of the expression that the picture shows.
     report : RigReport
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig = tg.build_rig(face)
+    >>> len(rig.names), rig.deltas.shape
+    (46, (46, 19057, 3))
+    >>> bool((rig.vertices() == rig.neutral).all())
+    True
+    >>> moved = rig.vertices({"jawOpen": 0.5}) - rig.neutral  # (n, 3) mm
+    >>> float(rig.weights({"jawOpen": 0.5}).sum())
+    0.5
     """
 
     names: tuple[str, ...]

@@ -79,6 +79,16 @@ def bake_texture(
     ValueError
         If the picture is not (H, W, 3) uint8, the size no integer from 32 to 8192, the parse of another size than the
         picture, or ``delight`` is asked of a fit without light.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> tg.bake_texture(img, face, size=256).shape
+    (256, 256, 3)
     """
     check_image(img)
     check_size(size)

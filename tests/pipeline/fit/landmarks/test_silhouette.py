@@ -55,6 +55,14 @@ def test_a_fit_ends_with_its_jaw_on_the_silhouette():
     normals = vertex_normals(fit.vertices, fit.faces)[fit.landmark_vertices[JAW]]
     assert np.median(np.abs(normals @ fit.camera.rotation[2])) < 0.15
     assert abs(fit.camera.yaw - lines.camera.yaw) < 4
+    middle = JAW[3:14]  # the ears hide the silhouette from the others
+
+    def apart(face):
+        return np.sqrt(
+            (((face.project(face.vertices[face.landmark_vertices]) - points)[middle]) ** 2).sum(axis=1).mean()
+        )
+
+    assert apart(fit) < apart(lines)
 
 
 def test_an_unknown_contour():

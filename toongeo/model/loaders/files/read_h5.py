@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo._extras import missing_extra
-from toongeo.model.loaders.files.refusing import refusing
+from toongeo.reading.promise import promise
 
 __all__ = ["read_h5"]
 
@@ -32,7 +32,7 @@ def read_h5(path: Path, names: Collection[str], optional: Collection[str] = ()) 
     """
     h5py = _h5py()
     size = path.stat().st_size
-    with refusing(path, "an HDF5 file"):
+    with promise(path, "an HDF5 file", alone=True):
         try:
             file = h5py.File(path, "r")
         except OSError as error:

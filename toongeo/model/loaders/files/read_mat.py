@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from toongeo.model.loaders.files.read_npz import MOST_BYTES
-from toongeo.model.loaders.files.refusing import refusing
+from toongeo.reading.promise import promise
 
 __all__ = ["mat_names", "read_mat"]
 
@@ -22,6 +21,7 @@ _STRUCT = 2  # class of a struct; 6 to 15 are arrays of numbers
 _NUMBERS = range(6, 16)
 _DTYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8", 12: "i8", 13: "u8"}
 _RATIO = 1100  # deflate packs nothing tighter than 1:1032
+_MOST_BYTES = 1 << 32  # of a variable that is unpacked: four times the largest published face model
 _NAME_BYTES = 4096  # unpacked to learn the name of a variable
 _DEPTH = 2  # structs within structs
 
@@ -34,7 +34,7 @@ def mat_names(path: Path) -> list[str]:
     ValueError
         If it is no MATLAB 5 file.
     """
-    with refusing(path, "a MATLAB 5 file"):
+    with promise(path, "a MATLAB 5 file", alone=True):
         data, order = _content(path)
         return [_name(element, order) for element in _elements(data, order)]
 
@@ -55,13 +55,13 @@ def read_mat(path: Path, names: Collection[str] | None = None) -> dict[str, NDAr
     ValueError
         If it is no MATLAB 5 file (MATLAB 7.3 writes another kind), or sizes do not fit.
     """
-    with refusing(path, "a MATLAB 5 file"):
+    with promise(path, "a MATLAB 5 file", alone=True):
         data, order = _content(path)
         found: dict[str, NDArray | dict[str, NDArray]] = {}
         for element in _elements(data, order):
             name = _name(element, order)
             if names is None or name in names:
-                value = _matrix(_unpacked(element, order, min(MOST_BYTES, _RATIO * len(data))), order, 0)
+                value = _matrix(_unpacked(element, order, min(_MOST_BYTES, _RATIO * len(data))), order, 0)
                 if value is not None:
                     found[name] = value
         return found

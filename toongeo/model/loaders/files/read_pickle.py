@@ -10,6 +10,7 @@ import math
 import pickle
 import pickletools
 import re
+import warnings
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,14 @@ def unpickled(content: bytes) -> Any:
     ValueError
         If it names anything else, takes a step that numbers do not need, or more than 20,000 of them.
     """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the parser, about damaged text
+        _check_steps(content)
+        return _Reader(io.BytesIO(content), encoding="latin1").load()
+
+
+def _check_steps(content: bytes) -> None:
+    """Refuse what numbers do not need, before anything is built."""
     for count, (step, argument, _) in enumerate(pickletools.genops(content)):
         if step.name not in _STEPS:
             raise ValueError(f"a pickle of numbers has no step {step.name}")
@@ -88,7 +97,6 @@ def unpickled(content: bytes) -> Any:
             raise ValueError(f"a pickle of numbers has no more than {_MOST_STEPS} steps")
         if step.name == "GLOBAL":
             _Reader(io.BytesIO(b"")).find_class(*str(argument).split(" ", 1))  # refused before anything is built
-    return _Reader(io.BytesIO(content), encoding="latin1").load()
 
 
 def plain(value: Any, seen: dict[int, Any] | None = None) -> Any:

@@ -46,6 +46,17 @@ def close_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     -------
     Rig
         A new one; only the two blinks differ, and only around the eyes.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig, eyes = tg.fit_lids(face, tg.build_rig(face), close=False)
+    >>> closing = tg.close_lids(face, rig, eyes)
+    >>> [name for name, a, b in zip(rig.names, rig.deltas, closing.deltas) if (a != b).any()]
+    ['eyeBlinkLeft', 'eyeBlinkRight']
     """
     started = time.perf_counter()
     deltas = rig.deltas.copy()

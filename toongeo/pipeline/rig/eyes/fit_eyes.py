@@ -49,6 +49,18 @@ class Eyes:
         Weights of ``GAZE_NAMES`` with which the eyes look as in the picture.
     seconds : float
         That finding them took.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig, eyes = tg.fit_lids(face, tg.build_rig(face))
+    >>> eyes.centres.shape, eyes.radii.shape
+    ((2, 3), (2,))
+    >>> bool(eyes.centres[0, 0] > 0 > eyes.centres[1, 0])  # left, then right: +X is the subject's left
+    True
     """
 
     centres: np.ndarray
@@ -97,6 +109,16 @@ def fit_eyes(face: AlignedFace, rig: Rig) -> Eyes:
     -------
     Eyes
         One for each eyeball of the model.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> eyes = tg.fit_eyes(face, tg.build_rig(face))
+    >>> eyes.centres.shape, bool((eyes.radii > 5).all())  # mm
+    ((2, 3), True)
     """
     started = time.perf_counter()
     count = len(face.model.eyes)

@@ -43,6 +43,16 @@ def fit_lids(face: AlignedFace, rig: Rig, *, close: bool = True) -> tuple[Rig, E
     Eyes
         Without lids that are rings of quads around a socket, eyeballs are all there is; a model without eyeballs has
         none either.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig, eyes = tg.fit_lids(face, tg.build_rig(face))
+    >>> rig.report.closure_left > 95  # percent
+    True
     """
     eyes = fit_eyes(face, rig)
     if not face.model.has("eyes", *lids_of("left"), *lids_of("right")):

@@ -44,6 +44,17 @@ def keep_lids_outside(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
     -------
     Rig
         A new one; only skin around the eyes differs.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig, eyes = tg.fit_lids(face, tg.build_rig(face))
+    >>> clear = tg.keep_lids_outside(face, rig, eyes)
+    >>> bool(abs(clear.deltas - rig.deltas).max() < 0.5)  # mm: fit_lids has done it already
+    True
     """
     started = time.perf_counter()
     deltas, gaze, skin = rig.deltas.copy(), rig.gaze.copy(), face.region("skin")

@@ -35,6 +35,16 @@ def fit_mouth(face: AlignedFace, rig: Rig, drawn: np.ndarray | None = None) -> R
     Rig
         A new one; its report has ``lips_closure``, in percent. The same, if the model has no ``mouth_cavity``, at
         whose border the lips end.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig = tg.fit_mouth(face, tg.build_rig(face))
+    >>> rig.report.lips_closure > 95  # percent
+    True
     """
     if not face.model.has("mouth_cavity"):
         return rig

@@ -44,6 +44,18 @@ def aim_eyes(
     -------
     Eyes
         With ``pose``, the ``eyeLook*`` weights in the order of ``GAZE_NAMES``, each in [0, 1].
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> face = tg.align_face(tg.fit_3dmm(None, landmarks), landmarks)
+    >>> rig, eyes = tg.fit_lids(face, tg.build_rig(face))
+    >>> eyes = tg.aim_eyes(face, eyes, tg.find_irises(img, landmarks))
+    >>> eyes.pose.shape, bool((eyes.pose >= 0).all() and (eyes.pose <= 1).all())
+    ((8,), True)
     """
     weights: dict[str, float] = {}
     for side, iris in enumerate(irises[: len(eyes.templates)]):

@@ -65,6 +65,19 @@ def bake_eyes(
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, or the texture not square uint8 RGB.
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> avatar = tg.make_avatar(img, landmarks, hair=False)
+    >>> texture = tg.bake_texture(img, avatar.face, size=256)
+    >>> irises = tg.find_irises(img, landmarks)
+    >>> with_eyes = tg.bake_eyes(img, avatar.face, avatar.eyes, texture, irises)
+    >>> with_eyes.shape, bool((with_eyes != texture).any())
+    ((256, 256, 3), True)
     """
     check_image(img)
     if texture.dtype != np.uint8 or texture.ndim != 3 or texture.shape[0] != texture.shape[1] or texture.shape[2] != 3:

@@ -81,6 +81,16 @@ def find_irises(img: np.ndarray, landmarks: np.ndarray, *, scheme: str = "ibug68
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, or the landmarks not (68, 2).
+
+    Examples
+    --------
+    >>> import toongeo as tg
+    >>> from toongeo.model import data_path
+    >>> img = tg.read_image(data_path("examples/portraits/moustache_man.png"))
+    >>> landmarks = tg.read_landmarks(data_path("examples/portraits/moustache_man.pts"))
+    >>> left, right = tg.find_irises(img, landmarks)
+    >>> bool(left.centre[0] > right.centre[0])  # px; left is the subject's
+    True
     """
     check_image(img)
     landmarks = ibug_landmarks(landmarks, scheme)

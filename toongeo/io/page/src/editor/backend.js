@@ -6,7 +6,7 @@ export function httpBackend(token) {
     try {
       response = await fetch(address, { ...options, cache: 'no-store' });
     } catch {
-      throw new Error('The editor has ended: start toongeo landmarks again');
+      throw new Error("This page's program has ended: start it again");
     }
     if (!response.ok) throw new Error(await response.text());
     return response;

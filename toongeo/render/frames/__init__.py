@@ -1,0 +1,1 @@
+"""Inner parts of the renderer of films: paint, edges, textures."""
