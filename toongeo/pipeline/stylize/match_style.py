@@ -93,7 +93,8 @@ def match_style(
         result += weight[..., None] * matched
         total += weight
     result = np.asarray(result / np.maximum(total, 1e-6)[..., None], np.float32)
-    if not same:
+    redrawn = not same or (lines.width > 0 and tones_of(goal[(others == 0) & ~wanted.cover]) is not None)
+    if redrawn:
         cover = lines_as_broad(lab, lines, wanted.width, size)[..., None]
         result += cover * (wanted.colour.astype(np.float32) - result)
     return np.rint(rgb_of(result)).astype(np.uint8)
@@ -131,7 +132,8 @@ def _mapped(lab: Singles, source: np.ndarray, target: np.ndarray) -> Singles:
     inverse = np.linalg.inv(spread)
     turn = inverse @ _root(spread @ (np.cov(target.T) + _LEAST * np.eye(3)) @ spread) @ inverse
     moved = (lab - source.mean(axis=0)) @ turn.T + target.mean(axis=0)
-    return np.asarray(moved, np.float32)
+    # teeth among lips, say: what is far off its part must not become a colour that the other drawing has nowhere
+    return np.asarray(np.clip(moved, target.min(axis=0), target.max(axis=0)), np.float32)
 
 
 def _root(matrix: Floats) -> Floats:

@@ -23,8 +23,9 @@ WORKING_SIZE, _MOST_PIXELS = 104.0, 500_000
 _STEEP_RADIUS = 0.012  # face sizes
 _NONE = 1e-3  # of cover
 # How far colours are off those of skin in its light where they are kept (Lab), less between nose and lip, where a smile
-# has no folds, and over how much that begins; the most that light changes lightness for one unit of shade.
-_OFF, _OFF_LIP, _SOFT_OFF, _MOST_SHADE = 15.0, 8.0, 3.0, 15.0
+# has no folds, and over how much that begins; the most that light changes lightness for one unit of shade, and the
+# least share that shadow leaves.
+_OFF, _OFF_LIP, _SOFT_OFF, _MOST_SHADE, _DEEPEST = 12.0, 8.0, 2.0, 15.0, 0.4
 _GREY = 1.0  # mean absolute a* and b* below which a picture has no colour
 
 
@@ -105,7 +106,10 @@ class Subject:
             away = shade[known] - shade[known].mean()
             slope = float(np.clip(away @ lightness[known] / max(float(away @ away), 1e-6), 0, _MOST_SHADE))
         expected = self.skin.median[0] + slope * (shade - (np.median(shade[known]) if known.any() else 0))
-        off = np.square(lightness - expected) + np.square(self.small[..., 1:] - self.skin.median[1:]).sum(axis=-1)
+        # A shadow takes L* + 16, a* and b* down alike: under a nose there is no moustache yet.
+        shadow = np.clip((lightness + 16) / np.maximum(expected + 16, 1), _DEEPEST, 1)
+        off = np.square(lightness + 16 - shadow * (expected + 16))
+        off += np.square(self.small[..., 1:] - shadow[..., None] * self.skin.median[1:]).sum(axis=-1)
         kept = around * soft_step(np.sqrt(off) - np.float32(_OFF) + np.float32(_OFF - _OFF_LIP) * lip, _SOFT_OFF)
         return self.full(np.asarray(blurred(kept.astype(np.float32), 0.012 * self.size * self.factor)))
 
