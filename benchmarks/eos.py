@@ -9,9 +9,9 @@ Accuracy. Both get the 50 points that eos's table maps to vertices, each with we
 error is easy with stranger faces, so the weight of our prior is bisected until the length of the shape coefficients, in
 standard deviations, is that of eos; the expressions have no prior in eos and next to none here. Once as they are, which
 is the same problem for both; and once with the other 16 jaw points, whose error counts across the outline, with a
-weight beside that of the 50. There eos looks for them anew on its contour and on occluding edges; ours slide along the paths
-that our loader finds. RMS is that of the 50 points in both, outline that of the distance from the 16 to the border of
-the face as it is drawn.
+weight beside that of the 50. There eos looks for them anew on its contour and on occluding edges; ours slide along the
+paths that our loader finds. RMS is that of the 50 points in both, outline that of the distance from the 16 to the
+border of the face as it is drawn.
 
 Speed. ``fit_3dmm(None, landmarks, model=surrey)`` with its defaults against ``fit_shape_and_pose`` with its own, with
 contours; for both the least CPU time of several.
@@ -183,7 +183,7 @@ def main() -> None:
     still = replace(surrey, contour_lines=())  # as eos without its contours
     columns = (
         "subject", "sd", "eos RMS px", "ours", "sd, outline", "eos RMS px", "ours", "eos outline px", "ours",
-        "eos, contours ms", "ours ms", "ratio",
+        "eos, contours CPU ms", "ours CPU ms", "ratio",
     )  # fmt: skip
     print(f"| {' | '.join(columns)} |\n|" + len(columns) * "---|")
     table = []

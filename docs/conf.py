@@ -29,6 +29,7 @@ extensions = [
     "result_plots",
     "linked_names",
     "mathml",
+    "table_heads",
 ]
 
 root_doc = "index"
@@ -59,11 +60,14 @@ html_math_renderer = "mathml"
 html_title = "toongeo"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_context = {"default_mode": "auto"}
+html_favicon = "_static/favicon.svg"
 html_copy_source = False
 html_show_sourcelink = False
 html_theme_options = {
     "logo": {"text": "toongeo"},
     "navbar_end": ["theme-switcher"],
+    "navbar_persistent": ["search-button"],
     "navbar_align": "left",
     "header_links_before_dropdown": 7,
     "show_prev_next": True,

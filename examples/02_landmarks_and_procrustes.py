@@ -179,18 +179,19 @@ print({part: f"{calm[part]:.1%} -> {alarmed[part]:.1%}" for part in ("brow", "no
 # **Shift.** Whatever $s$ and $R$ are, the best $t$ puts mean on mean. So subtract the means: $a_k = x_k - \bar x$,
 # $b_k = y_k - \bar y$.
 #
-# **Rotation.** Multiply out: $\sum \lVert s R a_k - b_k \rVert^2 = s^2 \sum \lVert a_k \rVert^2 - 2 s \sum b_k^T R a_k
-# + \sum \lVert b_k \rVert^2$. Only the middle term knows $R$. With $M = \sum_k b_k a_k^T$ it is $\operatorname{tr}(R^T
-# M)$. Write $M = U \Sigma V^T$ (singular value decomposition): $\operatorname{tr}(R^T M) = \operatorname{tr}(V^T R^T U
-# \Sigma)$, and $Z = V^T R^T U$ is a rotation too. Its diagonal entries are at most 1, so $\operatorname{tr}(Z \Sigma)
-# \le \sum \sigma_i$, with equality for $Z = I$:
+# **Rotation.** Multiply out:
+# $\sum \lVert s R a_k - b_k \rVert^2 = s^2 \sum \lVert a_k \rVert^2 - 2 s \sum b_k^T R a_k + \sum \lVert b_k \rVert^2$.
+# Only the middle term knows $R$. With $M = \sum_k b_k a_k^T$ it is $\operatorname{tr}(R^T M)$. Write $M = U \Sigma V^T$
+# (singular value decomposition): $\operatorname{tr}(R^T M) = \operatorname{tr}(V^T R^T U \Sigma)$, and $Z = V^T R^T U$
+# is a rotation too. Its diagonal entries are at most 1, so $\operatorname{tr}(Z \Sigma) \le \sum \sigma_i$, with
+# equality for $Z = I$:
 #
 # $$ R = U\, \mathrm{diag}(1, \dots, 1, d)\, V^T, \qquad d = \det(U V^T) = \pm 1 . \tag{3} $$
 #
 # The sign $d$ keeps a mirror image from posing as a rotation.
 #
-# **Scale.** What is left is a parabola in $s$ with its minimum at $s = \operatorname{tr}(R^T M) / \sum \lVert a_k
-# \rVert^2$.
+# **Scale.** What is left is a parabola in $s$ with its minimum at
+# $s = \operatorname{tr}(R^T M) / \sum \lVert a_k \rVert^2$.
 
 
 # %%

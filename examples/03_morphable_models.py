@@ -94,10 +94,10 @@ sheet([shown], names)
 #
 # ## 2 · Where modes come from
 #
-# Take $m$ faces with the same triangles, each as one long row of numbers; subtract their mean; the rows are $X$ ($m
-# \times 3n$). The singular value decomposition $X = U \Sigma V^T$ sorts what they have in common: the rows of $V^T$ are
-# directions, at right angles to each other, and $\sigma_k^2 / (m-1)$ is the variance of the faces along direction $k$.
-# The mode with one standard deviation as its unit is
+# Take $m$ faces with the same triangles, each as one long row of numbers; subtract their mean; the rows are $X$
+# ($m \times 3n$). The singular value decomposition $X = U \Sigma V^T$ sorts what they have in common: the rows of $V^T$
+# are directions, at right angles to each other, and $\sigma_k^2 / (m-1)$ is the variance of the faces along direction
+# $k$. The mode with one standard deviation as its unit is
 #
 # $$ B_k = \frac{\sigma_k}{\sqrt{m - 1}}\, V_k . \tag{2} $$
 #
@@ -180,8 +180,9 @@ sheet(rows)
 # two like caricatures.*
 #
 # Now a surprise. The likeliest face is the one at the middle. How likely is it to *meet* somebody near the middle? The
-# squared distance $\sum_k a_k^2$ of a random person has the mean 80 and hardly varies: *everybody is about $\sqrt{80}
-# \approx 9$ deviations from the average*. In one dimension the middle is where people are; in eighty it is empty.
+# squared distance $\sum_k a_k^2$ of a random person has the mean 80 and hardly varies: *everybody is about
+# $\sqrt{80} \approx 9$ deviations from the average*. In one dimension the middle is where people are; in eighty it is
+# empty.
 
 # %%
 distances = np.linalg.norm(np.random.default_rng(1).standard_normal((20000, 80)), axis=1)
@@ -334,8 +335,8 @@ print({sigma: f"{error:.1f} mm" for sigma, error in by_sigma.items()})
 
 # %%
 # 3. Not the farthest one, but one whose motion goes with that of much else, and that the nose has not told yet. (The
-#    covariance does not depend on what is measured, so nothing has to be measured to answer this: that is how experiments
-#    are planned.)
+#    covariance does not depend on what is measured, so nothing has to be measured to answer this: that is how
+#    experiments are planned.)
 G = np.einsum("knc,lnc->kl", B_face, B_face) / B_face.shape[1]
 doubt = {k: float(np.sqrt(np.trace(told(np.r_[27:36, k])[1] @ G))) for k in range(68) if not 27 <= k < 36}
 best_point = min(doubt, key=doubt.get)

@@ -50,16 +50,16 @@ assert np.allclose(px, camera.project(head))
 # %% [markdown]
 # ## 2 · Rotations
 #
-# **Angles.** A head is shaken (yaw), nods (pitch), tilts (roll): $R =
-# R_z(\text{roll})\,R_x(\text{pitch})\,R_y(\text{yaw})$, each counter-clockwise when its axis points at you. Good for
-# telling people; bad for optimizing, for at a pitch of 90° yaw and roll turn about the same axis.
+# **Angles.** A head is shaken (yaw), nods (pitch), tilts (roll):
+# $R = R_z(\text{roll})\,R_x(\text{pitch})\,R_y(\text{yaw})$, each counter-clockwise when its axis points at you. Good
+# for telling people; bad for optimizing, for at a pitch of 90° yaw and roll turn about the same axis.
 #
-# **Vectors.** Any rotation is a turn by an angle $\theta$ about an axis $a$ of length 1. Write it as one vector $\omega
-# = \theta a$, and with the cross product as a matrix, $[\omega]_\times u = \omega \times u$, the rotation is the
-# exponential
+# **Vectors.** Any rotation is a turn by an angle $\theta$ about an axis $a$ of length 1. Write it as one vector
+# $\omega = \theta a$, and with the cross product as a matrix, $[\omega]_\times u = \omega \times u$, the rotation is
+# the exponential
 #
-# $$ R = e^{[\omega]_\times}
-#    = I + \frac{\sin\theta}{\theta} [\omega]_\times + \frac{1 - \cos\theta}{\theta^2} [\omega]_\times^2
+# $$ R = e^{[\omega]_\times} =
+#    I + \frac{\sin\theta}{\theta} [\omega]_\times + \frac{1 - \cos\theta}{\theta^2} [\omega]_\times^2
 #    \qquad\text{(Rodrigues)}. \tag{2} $$
 #
 # Near $\omega = 0$ this is $I + [\omega]_\times$: a small turn moves a point $u$ by $\omega \times u$. That derivative
@@ -114,14 +114,14 @@ strip([clay(head, ScaledOrthographicCamera.look(**turn, size=220, extent=320)) f
 #
 # ## 3 · Perspective
 #
-# A real lens makes near things large. With the viewer at the origin of the camera frame, a point $y = R v + t$ (so $y_z
-# < 0$ for what is seen) lands at
+# A real lens makes near things large. With the viewer at the origin of the camera frame, a point $y = R v + t$ (so
+# $y_z < 0$ for what is seen) lands at
 #
 # $$ \text{px} = c + f\, \frac{P\, y}{-y_z} . \tag{3} $$
 #
-# $f$ is the focal length in pixels, $c$ the pixel of the optical axis. Compare (1): the scale $s$ has become $f /
-# (-y_z)$, one for each point. If the head is far away, $-y_z$ is nearly the same for all its points, and (1) is (3)
-# with one mean depth. How far is far? Move away and zoom in, so that the eyes stay as far apart:
+# $f$ is the focal length in pixels, $c$ the pixel of the optical axis. Compare (1): the scale $s$ has become
+# $f / (-y_z)$, one for each point. If the head is far away, $-y_z$ is nearly the same for all its points, and (1) is
+# (3) with one mean depth. How far is far? Move away and zoom in, so that the eyes stay as far apart:
 
 # %%
 distances = np.array([300, 450, 700, 1200, 2500, 6000.0])  # mm
@@ -152,8 +152,8 @@ print({f"{d / 1000} m": f"{g:.0f} mm" for d, g in zip(distances, gap, strict=Tru
 #
 # Known: points $v_n$ of a face in space, and where they are seen, $q_n$. Wanted: $s, R, t$. If $A$ may be *any* 2 × 3
 # matrix, $q_n \approx A v_n + t$ is a linear least-squares problem. Subtract both means and $t$ is gone; `lstsq` does
-# the rest. Then find the scaled rotation nearest to $A$. With the singular value decomposition $A =
-# U\,\mathrm{diag}(\sigma_1, \sigma_2)\,V^T$,
+# the rest. Then find the scaled rotation nearest to $A$. With the singular value decomposition
+# $A = U\,\mathrm{diag}(\sigma_1, \sigma_2)\,V^T$,
 #
 # $$ R_{2\times3} = U V^T, \qquad s = \tfrac12 (\sigma_1 + \sigma_2), \tag{4} $$
 #

@@ -57,8 +57,8 @@ def show(pictures, titles, *, rows=1, side=2.2, **options):
 # $$ E(n) = \int L(\omega)\, \max(n \cdot \omega, 0)\, d\omega . $$
 #
 # The cosine blurs: details of the light do not show on a matt surface. So $L$ is written in functions on the sphere
-# that are ordered by detail, the *spherical harmonics* $Y_{lm}$, as a sound is written in frequencies. Of degree $l =
-# 0$ there is one (constant), of degree 1 three (the components of $n$), of degree 2 five (products of two of them). The
+# that are ordered by detail, the *spherical harmonics* $Y_{lm}$, as a sound is written in frequencies. Of degree 0
+# there is one (constant), of degree 1 three (the components of $n$), of degree 2 five (products of two of them). The
 # integral multiplies each by a number $A_l$ that depends on the degree only, and from degree 3 on next to nothing is
 # left (Ramamoorthi and Hanrahan 2001):
 #
@@ -196,17 +196,20 @@ for name, light in found.items():
 print(f"the worst of 108 numbers is off by {light_error:.2f}")
 
 # %% [markdown]
+# The light comes back, but not to the last digit: the renderer works out light at vertices and mixes it between them, a
+# picture has 256 steps, and the half of a face that is seen hardly tells some of the nine apart (exercise 1).
+#
 # ## Analysis, second part: shape
 #
 # Now the light is *not* known, and one number of the shape is not known either. For every value of it we can do the
 # step above: find the light that is best for this shape, and see what is left,
 #
 # $$ L_{photo}(\alpha) = \min_{L} \frac{1}{N} \sum_i
-# \Big\| \frac{\rho_i}{\pi} E_L(n_i(\alpha)) - I\big(\Pi\, v_i(\alpha)\big) \Big\|^2 . \qquad (\text{Eq. 5}) $$
+# \left\| \frac{\rho_i}{\pi} E_L(n_i(\alpha)) - I\big(\Pi\, v_i(\alpha)\big) \right\|^2 . \qquad (\text{Eq. 5}) $$
 #
 # Two things depend on the shape: the normals, and the place $\Pi v_i$ where the picture is read. The light is never
-# searched for; it is solved for inside of the loss. (This is called *variable projection*: it makes a search in 90
-# dimensions out of one in 117.)
+# searched for; it is solved for inside of the loss. (This is called *variable projection*. It takes 27 unknowns, nine
+# for each channel, out of the search.)
 #
 # We take the true person, change one mode of the shape by −2 to 2 standard deviations, and look at the loss.
 

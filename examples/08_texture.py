@@ -78,10 +78,10 @@ plt.show()
 # where the face is seen from the front and spread out.*
 #
 # A cell of the atlas is a *texel*. Which triangle does it lie in, and where? Drawing triangles into a grid and noting
-# that is *rasterising*, and the place is given by *barycentric coordinates*: three weights $\lambda_1, \lambda_2,
-# \lambda_3$ with sum 1, so that the texel is $\lambda_1 a + \lambda_2 b + \lambda_3 c$ of the triangle's corners in the
-# atlas. And now the trick: the same weights of the same corners *in space* are the point of the skin that the texel
-# stands for; the camera $\Pi$ says where the picture shows it (Eq. 12):
+# that is *rasterising*. The place in the triangle is given by *barycentric coordinates*: three weights
+# $\lambda_1, \lambda_2, \lambda_3$ with sum 1, so that the texel is $\lambda_1 a + \lambda_2 b + \lambda_3 c$ of the
+# triangle's corners in the atlas. And now the trick: the same weights of the same corners *in space* are the point of
+# the skin that the texel stands for; the camera $\Pi$ says where the picture shows it (Eq. 12):
 #
 # $$ p = \lambda_1 v_1 + \lambda_2 v_2 + \lambda_3 v_3, \qquad \text{pixel} = \Pi(p) . $$
 
@@ -243,12 +243,12 @@ assert library_gap <= 1  # of 255: rounding
 # The black patch is worth a look. The end of that brow reached the border of what was known, and diffusion does not
 # know that a line is a line: what touches the border is spread. The library lets only plain skin do that.
 #
-# The same as a film, where the notebook is shown by something that plays it.
+# The same as a film, which plays once, where the notebook is shown by something that plays it.
 
 
 # %%
 def animate(frames, description):
-    """Show frames as a film in a notebook; nothing where there is none."""
+    """Show frames once, as a film of less than five seconds, in a notebook; nothing where there is none."""
     try:
         from IPython import get_ipython
         from IPython.display import display
@@ -258,9 +258,9 @@ def animate(frames, description):
         return
     pictures = [Image.fromarray(frame).resize((196, 165)).quantize(48) for frame in frames]
     file = io.BytesIO()
-    pictures[0].save(file, "gif", save_all=True, append_images=pictures[1:], duration=120, loop=0)
+    pictures[0].save(file, "gif", save_all=True, append_images=pictures[1:], duration=160)
     data = {"image/gif": base64.b64encode(file.getvalue()).decode(), "text/plain": description}
-    display(data, raw=True)
+    display(data, raw=True, metadata={"image/gif": {"alt": description}})
 
 
 animate(

@@ -174,8 +174,10 @@ print(f"outside of its region ({outside.mean():.0%} of the picture) an edit chan
 print(f"with the expression of the drawing itself, {back:.2%} of the pixels change by more than 8 of 255")
 
 # %% [markdown]
-# *Figure: The drawing and five edits of it: smile, surprise with an open mouth and teeth, wink, anger and kiss, all in
+# *Figure: The drawing and five edits of it: smile, surprise with an open mouth, wink, anger and kiss, all in
 # the lines and colours of the drawing.*
+#
+# The last number is not quite zero: the line between the lips is drawn anew, because the next moment it may open.
 #
 # ## Absolute or relative
 #
@@ -270,8 +272,8 @@ show([frames["surprise"][CROP], kept_frame[CROP]], ["classical generator", "A = 
 print(f"mean difference in the region: {difference:.1f} of 255")
 
 # %% [markdown]
-# *Figure: The surprised man twice, with the classical generator and with one that keeps the old texture: both mouths are
-# open, and the first is darker inside.*
+# *Figure: The surprised man twice, with the classical generator and with one that keeps the old texture: both mouths
+# are open, and the first is darker inside.*
 
 # %%
 numbers: dict[str, float] = {

@@ -213,12 +213,12 @@ plt.show()
 
 # %% [markdown]
 # *Figure: The front of the template four times in clay, and below in colours of the distance from the truth: as it is,
-# far off at nose and jaw; crumpled about eyes and lips where points jumped; smooth and mostly dark after our
+# far off at nose and forehead; crumpled about eyes, nose and lips where points jumped; smooth and mostly dark after our
 # registration, and after the library's.*
 #
 # What remains is mostly *along* the surface: a cheek has no marks by which one could tell a point from its neighbour.
-# For expressions that matters little, since neighbours move alike. A small distance to the surface alone says nothing:
-# the jump has none at all.
+# For most expressions that matters little, since neighbours move alike. A small distance to the surface alone says
+# nothing: the jump has none at all.
 #
 # ## 3. What the library adds
 #
@@ -269,7 +269,7 @@ plt.show()
 #
 # Are these the right motions? The truth would be those of the person whose surface this is. Carry them to your vertices
 # by the triangle that each lies in, and compare. Written as one number: the length of the difference against the length
-# of the motion, over all expressions.
+# of the motion, for five expressions.
 
 # %%
 transferred = tg.DeformationTransfer(model.mean, model.faces, person)
@@ -289,8 +289,9 @@ for name in names:
 print("error against the motion:", ", ".join(f"{name} {error:.0%}" for name, error in errors.items()))
 
 # %% [markdown]
-# Large motions come over well. The blink is not meant to be the same: plain transfer leaves a gap between the lids of
-# another face, which `rig_mesh` closes.
+# Broad motions come over well, a blink less so: within a few millimetres of lid its motion falls from 12 mm to
+# nothing, so there it counts where along the surface the partner was found, and of your coarse mesh some fifty
+# vertices take part.
 #
 # On a command line: `toongeo rig head.obj --landmarks head.json -o head.glb`. To pick the points, any program will do
 # that writes 3D points, MeshLab's `.pp` for example.

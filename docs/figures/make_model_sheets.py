@@ -19,13 +19,13 @@ from toongeo.model import data_path
 
 HERE = Path(__file__).parent
 PICTURE = "examples/portraits/moustache_man"
-TILE = 240
+TILE, TITLE = 240, 24  # px
 SMILE = {"mouthSmileLeft": 1.0, "mouthSmileRight": 1.0, "eyeBlinkLeft": 1.0, "eyeBlinkRight": 1.0}
 
 
 def row(img, landmarks, model, title):
     avatar = tg.make_avatar(img, landmarks, model=model, texture_size=1024)
-    scale = TILE / max(img.shape[:2])
+    scale = (TILE - TITLE) / max(img.shape[:2])
     small = cv2.resize(img, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     tile = np.full((TILE, TILE, 3), 255, np.uint8)
     tile[: small.shape[0], : small.shape[1]] = small

@@ -17,6 +17,7 @@ MAIN = ["index", "learn/index", "howto/index", "choose", "theory/pan", "api/inde
 MAIN += ["gallery/index", "benchmarks", "comparison", "licences", "accessibility", "project/changelog"]
 # The page of the head has tests of its own (tests/web); in a frame axe would only look at it again.
 AXE = "{exclude: ['iframe']}"
+_CHOSEN = "['mode', 'theme'].forEach((key) => localStorage.setItem(key, '{}'))"
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +84,7 @@ def test_pictures_have_words_and_pages_a_heading(site):
 def test_main_pages_are_accessible(site, browse, serve, theme, width):
     """axe finds nothing, and nothing is wider than the screen."""
     pages = [name for name in MAIN if (site / f"{name}.html").is_file()]
-    steps = [{"size": [width, 844 if width < 500 else 800]}, {"run": f"localStorage.setItem('theme', '{theme}')"}]
+    steps = [{"size": [width, 844 if width < 500 else 800]}, {"run": _CHOSEN.format(theme)}]
     for name in pages:
         steps += [{"open": f"{name}.html"}, {"axe": AXE}]
         steps += [{"run": "document.documentElement.scrollWidth - innerWidth"}]

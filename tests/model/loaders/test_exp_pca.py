@@ -83,7 +83,5 @@ def test_models_that_have_their_own_take_none(face, files):
     with pytest.raises(ValueError, match="expected the original model to go with expression"):
         load_model(files / "front.mat", expression=files / "Exp_Pca.bin")
     layouts.gnm(face, files / "gnm.npz")
-    with pytest.raises(
-        ValueError, match="expression: expected a model of eos or the Basel .*, got gnm"
-    ):
+    with pytest.raises(ValueError, match="expression: expected a model of eos or the Basel .*, got gnm"):
         load_model(files / "gnm.npz", expression=files / "Exp_Pca.bin")

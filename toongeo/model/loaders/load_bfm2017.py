@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from toongeo.model.loaders.files.read_h5 import read_h5
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.eye_frame import EYE_DEPTH_MM
+from toongeo.reading.check_file import file_bytes
 from toongeo.reading.promise import promise
 
 __all__ = ["load_bfm2017"]
@@ -20,6 +21,7 @@ _PARTS = ("mean", "pcaBasis", "pcaVariance")
 _SHAPE = tuple(f"shape/model/{part}" for part in _PARTS)
 _MORE = tuple(f"{kind}/model/{part}" for kind in ("expression", "color") for part in _PARTS)
 _CELLS, _POINTS_OF_INTEREST = "shape/representer/cells", "metadata/landmarks/json"
+_TEXTURE = "model2019_textureMapping.json"
 _CORNERS = tuple(f"{side}.eye.corner_{end}" for side in ("left", "right") for end in ("outer", "inner"))
 
 
@@ -27,7 +29,8 @@ def load_bfm2017(path: str | Path, landmarks: NDArray[np.int64] | None = None) -
     """``model2017-1_bfm_nomouth.h5``, ``model2017-1_face12_nomouth.h5``, ``model2019_fullHead.h5`` and their like.
 
     A unit of a mode becomes one standard deviation: the files hold variances. They are in mm and have no iBUG-68 table;
-    if their own landmarks name the corners of the eyes, the origin lies behind these.
+    if their own landmarks name the corners of the eyes, the origin lies behind these. ``model2019_textureMapping.json``
+    beside the file gives texture coordinates, if it has one for every vertex: it belongs to the full head.
 
     Parameters
     ----------
@@ -65,9 +68,23 @@ def load_bfm2017(path: str | Path, landmarks: NDArray[np.int64] | None = None) -
             identity=_modes(z, "shape"),
             expression=expression,
             landmarks=landmarks,
+            **_texture(path.with_name(_TEXTURE), faces, len(mean)),
             origin=None if landmarks is not None else _between_eyes(z.get(_POINTS_OF_INTEREST)),
             **colours,
         )
+
+
+def _texture(path: Path, faces: NDArray[np.int64], count: int) -> dict[str, NDArray]:
+    """Texture coordinates of each of ``count`` vertices, v up, if there is a file that has as many."""
+    if not path.is_file():
+        return {}
+    with promise(path, "the texture mapping of the Basel Face Model", alone=True):
+        uv = np.array(json.loads(file_bytes(path))["textureMapping"]["pointData"], np.float64)
+        if uv.ndim != 2 or uv.shape[1] != 2:
+            raise ValueError(f"expected points (n, 2), got {uv.shape}")
+        if len(uv) != count:
+            return {}
+        return {"uv": uv, "uv_faces": np.ascontiguousarray(faces, np.int64)}
 
 
 def _points(values: NDArray) -> NDArray[np.float64]:
