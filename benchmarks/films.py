@@ -32,6 +32,10 @@ from toongeo.io import has_pyav
 from toongeo.model.expression_schemes import EXPRESSIONS
 
 SIZE, FPS, COUNT = 512, 30, 60
+HEAD = (
+    "| picture | frame ms | `Avatar.render` ms | ratio | PSNR to it dB | `.mp4` / `.webm` by PyAV ms, MB "
+    "| by OpenCV ms, MB | bound, frames/s: PyAV | OpenCV |"
+)
 KINDS = [(suffix, pyav) for pyav in ((False, True) if has_pyav() else (False,)) for suffix in (".mp4", ".webm")]
 
 
@@ -70,6 +74,7 @@ def main() -> None:
     cv2.setNumThreads(1)
     take = performance()
     names = [Path(name).stem for name in options.pictures]
+    rows, clock = [], []
     with tempfile.TemporaryDirectory() as folder:
         for name in names:
             avatar = make_avatar(read_image(FOLDER / f"{name}.png"), read_landmarks(FOLDER / f"{name}.pts"))
@@ -80,20 +85,24 @@ def main() -> None:
             drawn = [seconds(puppet.frame, row, head) for row, head in zip(take.weights, take.head, strict=True)]
             ms = 1e3 * min(took for took, _ in drawn)
             rival = 1e3 * min(took for took, _ in plain)
-            print(f"{name}: frame {ms:.0f} ms, Avatar.render {rival:.0f} ms, ratio {ms / rival:.2f}, {near:.1f} dB")
+            cells, bounds = {}, {}
             for suffix, pyav in KINDS:
                 coding, size = encoded([frame for _, frame in drawn], suffix, pyav, folder)
-                bound = 2 / (1e-3 * ms + coding)
-                kind = "PyAV" if pyav else "OpenCV"
-                print(f"  {suffix} by {kind}: {1e3 * coding:.0f} ms, {size / 1e6:.2f} MB, bound {bound:.0f} frames/s")
+                cells.setdefault(pyav, []).append(f"{1e3 * coding:.0f}, {size / 1e6:.2f}")
+                bounds.setdefault(pyav, []).append(f"{2 / (1e-3 * ms + coding):.0f}")
+            columns = [" / ".join(each.get(pyav, ["-"])) for each in (cells, bounds) for pyav in (True, False)]
+            columns = [f"{ms:.0f}", f"{rival:.0f}", f"{ms / rival:.2f}", f"{near:.1f}", *columns]
+            rows.append(f"| {name}{'' if avatar.hair is None else ' (hair)'} | " + " | ".join(columns) + " |")
             if options.drive:
                 avatar.save(Path(folder) / "face.glb")
                 write_live_link(Path(folder) / "take.csv", Take(take.times * 5, take.weights, take.head))
                 start = time.perf_counter()
                 source = TakeSource(weights=Path(folder) / "take.csv")
                 drive.drive(Path(folder) / "face.glb", Path(folder) / "film.mp4", source, FilmOptions(SIZE, FPS))
-                print(f"  drive: {(5 * (COUNT - 1) + 1) / (time.perf_counter() - start):.1f} frames/s by the clock")
-    print(roles("films", names))
+                clock.append(
+                    f"drive, {name}: {(5 * (COUNT - 1) + 1) / (time.perf_counter() - start):.1f} frames/s by the clock"
+                )
+    print("\n".join([HEAD, "|---" * 9 + "|", *rows, "", *clock, roles("films", names)]))
 
 
 if __name__ == "__main__":

@@ -1,19 +1,26 @@
 """Drawings of photographs: warps that must not fold, who is still recognised, what became of hair and skin, seconds.
 
-usage: PYTHONPATH=.:data_templates/build python benchmarks/stylize.py warps|people|renders|seconds [SHARED]
+usage: PYTHONPATH=.:data_templates/build python benchmarks/stylize.py warps|people|renders|seconds|memory [SHARED]
+       PYTHONPATH=.:data_templates/build python benchmarks/stylize.py pairs FOLDER KEY
 
 SHARED is the folder with ``data/models/ict_facekit`` for ``people``. Renders are of seeds: constants of the appearance
-were chosen on those of 77 (and on the astronaut, image_0010, takeo and einstein), the figures are of 78.
+were chosen on those of 77 (and on the astronaut, image_0010, takeo and einstein), the figures are of 78; pairs for a
+blind judge, which go to FOLDER while which side is ours goes to the file KEY, are of 79.
 """
 
+import itertools
+import json
 import os
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"):
     os.environ[variable] = "1"
 
+import resource
 import sys
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -22,6 +29,7 @@ from scipy.interpolate import RBFInterpolator
 
 import toongeo as tg
 from toongeo.colour.cielab import cielab
+from toongeo.io import write_image
 from toongeo.model import default_model
 from toongeo.pipeline import STYLES
 from toongeo.pipeline.stylize.exaggerated import exaggerated
@@ -33,7 +41,8 @@ SHAPE = (640, 640)
 
 
 def main() -> None:
-    {"warps": warps, "people": people, "renders": renders, "seconds": seconds}[sys.argv[1]]()
+    tasks = {"warps": warps, "people": people, "renders": renders, "seconds": seconds, "memory": memory, "pairs": pairs}
+    tasks[sys.argv[1]]()
 
 
 def warps(count: int = 1000) -> None:
@@ -115,22 +124,28 @@ def centred(faces: list, noise: float, rng: np.random.Generator | None = None) -
     return np.array(shapes) - np.mean(shapes, axis=0)
 
 
+def scenes(seed: int, yaw: float, size: int) -> Iterator[Any]:
+    """Renders of people that look at most so many degrees aside."""
+    from renders.scene import random_scene
+
+    for number in itertools.count():
+        scene = random_scene(np.random.default_rng([seed, number]), "person", size=size)
+        if abs(scene.yaw) <= yaw:
+            yield scene
+
+
 def renders(count: int = 20) -> None:
     """What became of the skin, the hair and glasses of renders of people."""
-    from renders.scene import Part, random_scene
+    from renders.scene import Part
 
     from toongeo.pipeline.stylize.stylize import subject_for
 
     hair_as_skin, lightness, rims = [], [], []
-    seed = 0
-    while len(lightness) < count:
-        scene = random_scene(np.random.default_rng([78, seed]), "person", size=420)
-        seed += 1
-        if abs(scene.yaw) > 25:
-            continue
+    for scene in itertools.islice(scenes(78, 25, 420), count):
         img = np.clip(scene.picture, 0, 255).astype(np.uint8)
         drawn = tg.stylize(img, scene.landmarks, "toon")
-        subject = subject_for(img, scene.landmarks, drawn.warp, STYLES["toon"])
+        fit = tg.fit_3dmm(None, scene.landmarks)
+        subject = subject_for(img, scene.landmarks, fit, drawn.warp, STYLES["toon"], drawn.hair)
         seen = {part: drawn.warp.picture((scene.parts == part).astype(np.float32)) > 0.9 for part in Part}
         if seen[Part.HAIR].sum() > 500:
             hair_as_skin.append(float((subject.full(subject.skin.drawn)[seen[Part.HAIR]] > 0.5).mean()))
@@ -150,16 +165,59 @@ def contrast(lightness: np.ndarray, rim: np.ndarray, skin: np.ndarray) -> float:
     return float(abs(np.median(lightness[rim]) - np.median(lightness[around]))) if rim.any() and around.any() else 0.0
 
 
+RIVALS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "cv2.stylization": lambda img: cv2.stylization(img, sigma_s=60, sigma_r=0.45),
+    "cv2.pencilSketch": lambda img: cv2.pencilSketch(img, sigma_s=60, sigma_r=0.07, shade_factor=0.05)[1],
+    "bilateral and edges": lambda img: bilateral_and_edges(img),
+}
+
+
+def bilateral_and_edges(img: np.ndarray) -> np.ndarray:
+    """The usual recipe: bilateral filters at half the size, and dark lines by an adaptive threshold."""
+    small = cv2.pyrDown(img)
+    for _ in range(7):
+        small = cv2.bilateralFilter(small, 9, 9, 7)
+    smooth = cv2.resize(small, img.shape[1::-1], interpolation=cv2.INTER_LINEAR)
+    grey = cv2.medianBlur(cv2.cvtColor(img, cv2.COLOR_RGB2GRAY), 7)
+    lines = cv2.adaptiveThreshold(grey, 255, cv2.ADAPTIVE_THRESH_MEAN_C, cv2.THRESH_BINARY, 9, 2)
+    return cv2.bitwise_and(smooth, smooth, mask=lines)
+
+
+def pairs(count: int = 42) -> None:
+    """Sheets of a photograph and two drawings of it, ours and a rival's in an order that only the key tells."""
+    folder, key = Path(sys.argv[2]), {}
+    folder.mkdir(parents=True, exist_ok=True)
+    order = np.random.default_rng(79)
+    for number, scene in enumerate(itertools.islice(scenes(79, 18, 512), count)):
+        img = np.clip(scene.picture, 0, 255).astype(np.uint8)
+        rival = list(RIVALS)[number % len(RIVALS)]
+        style = "ink" if number % 6 == 1 else "toon"  # a half of those against pencils
+        drawings = {"ours": tg.stylize(img, scene.landmarks, style).img, "rival": RIVALS[rival](img)}
+        left, right = order.permutation(list(drawings))
+        gap = np.full((len(img), 12, 3), 255, np.uint8)
+        sheet = np.hstack([img, gap, drawings[left], gap, drawings[right]])
+        write_image(folder / f"pair_{number:02d}.png", sheet)
+        key[f"pair_{number:02d}"] = {"left": left, "right": right, "rival": rival, "style": style}
+    Path(sys.argv[3]).write_text(json.dumps(key, indent=1))
+
+
+def memory(side: int = 6325) -> None:
+    """Most memory of the process while a picture of 40 megapixels is drawn."""
+    img, points = tg.read_image(FOLDER / "astronaut.png"), tg.read_landmarks(FOLDER / "astronaut.pts")
+    factor = side / len(img)
+    img = cv2.resize(img, (side, side), interpolation=cv2.INTER_LINEAR)
+    tg.stylize(img, (points + 0.5) * factor - 0.5)
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(f"{side**2 / 1e6:.0f} MP: the process holds {most:.0f} MB at most; the picture is {img.nbytes / 2**20:.0f}")
+
+
 def seconds() -> None:
     """Processor seconds for a picture of 1024 px, beside what OpenCV has."""
     img = tg.read_image(FOLDER / "astronaut.png")
     points = tg.read_landmarks(FOLDER / "astronaut.pts")
     img = cv2.resize(img, (1024, 1024), interpolation=cv2.INTER_CUBIC)
     points = (points + 0.5) * 2 - 0.5
-    rivals = {
-        "cv2.stylization": lambda: cv2.stylization(img, sigma_s=60, sigma_r=0.45),
-        "cv2.pencilSketch": lambda: cv2.pencilSketch(img, sigma_s=60, sigma_r=0.07, shade_factor=0.05),
-    }
+    rivals = {name: lambda run=run: run(img) for name, run in RIVALS.items()}
     for name, run in {**{style: lambda s=style: tg.stylize(img, points, s) for style in STYLES}, **rivals}.items():
         run()
         started = time.process_time()

@@ -20,7 +20,6 @@ version = release = toongeo.__version__
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
-    "sphinx.ext.mathjax",
     "numpydoc",
     "myst_nb",
     "sphinx_design",
@@ -29,6 +28,8 @@ extensions = [
     "turning_head",
     "result_plots",
     "linked_names",
+    "mathml",
+    "table_heads",
 ]
 
 root_doc = "index"
@@ -36,7 +37,6 @@ exclude_patterns = ["_build", "_ext", "figures", "project/plots.md", "**/.ipynb_
 templates_path = ["_templates"]
 language = "en"
 nitpicky = True
-suppress_warnings = ["myst.header"]  # licences are quoted as they are, from any level of heading
 
 # Prose. Notebooks carry their outputs; nothing is run here.
 nb_execution_mode = "off"
@@ -56,14 +56,18 @@ add_module_names = False
 python_use_unqualified_type_names = True
 
 html_theme = "pydata_sphinx_theme"
+html_math_renderer = "mathml"
 html_title = "toongeo"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_context = {"default_mode": "auto"}
+html_favicon = "_static/favicon.svg"
 html_copy_source = False
 html_show_sourcelink = False
 html_theme_options = {
     "logo": {"text": "toongeo"},
     "navbar_end": ["theme-switcher"],
+    "navbar_persistent": ["search-button"],
     "navbar_align": "left",
     "header_links_before_dropdown": 7,
     "show_prev_next": True,

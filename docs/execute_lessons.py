@@ -37,8 +37,8 @@ PRIVATE = re.compile(
 )
 _NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _CAPTION = re.compile(r"\*?Figure[^:]*: *(.+?)\*?", re.DOTALL)
-# A cell longer than this is broken: a whole lesson takes less than 30 s on one core.
-_CELL_SECONDS = 180
+# A cell that takes longer is broken: a whole lesson takes less than 30 s on one core that it has to itself.
+_CELL_SECONDS = 600
 _METADATA = {
     "jupytext": {"text_representation": {"extension": ".py", "format_name": "percent"}},
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},

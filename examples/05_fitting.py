@@ -9,7 +9,7 @@
 # %% [markdown]
 # # 5 · Fitting
 #
-# **Which face, seen from where, puts its landmarks onto these 68 dots?**
+# **Which face, seen from where, puts its landmarks onto these dots?**
 #
 # A morphable model makes faces from numbers; a camera makes pixels from faces. Fitting runs both backwards. There is no
 # formula for that. So we write down *how wrong* a guess is, as one number, and let an optimizer make it small. On the
@@ -84,9 +84,10 @@ def to_px(points: np.ndarray) -> np.ndarray:
 q = from_px(landmarks[inner])  # (51, 2): the dots
 
 # %% [markdown]
-# All unknowns stand in one vector: $x = [\,c_1 \dots c_{127},\ \text{yaw}, \text{pitch}, \text{roll},\ \ell,\ t_x,
-# t_y\,]$. Here is (1) and (2) in code, and with it what the optimizer will ask for: how each dot moves when each
-# unknown moves. Such a table of derivatives is called the *Jacobian* $J$. It comes from (2) term by term:
+# All unknowns stand in one vector:
+# $x = [\,c_1 \dots c_{127},\ \text{yaw}, \text{pitch}, \text{roll},\ \ell,\ t_x, t_y\,]$. Here is (1) and (2) in code,
+# and with it what the optimizer will ask for: how each dot moves when each unknown moves. Such a table of derivatives
+# is called the *Jacobian* $J$. It comes from (2) term by term:
 #
 # | unknown | how $\hat q_n$ moves |
 # |---|---|
@@ -99,8 +100,9 @@ q = from_px(landmarks[inner])  # (51, 2): the dots
 # %%
 def rotation(angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """R (3, 3) for yaw, pitch, roll in radians, and its derivative by each of the three (3, 3, 3)."""
+    # A turn about y mixes z and x, one about x mixes y and z, one about z mixes x and y: always by [[c, -s], [s, c]].
     factors, slopes = [], []
-    for angle, (i, j) in zip(angles, ((2, 0), (1, 2), (0, 1)), strict=True):  # about y, x, z
+    for angle, (i, j) in zip(angles, ((2, 0), (1, 2), (0, 1)), strict=True):
         c, s = np.cos(angle), np.sin(angle)
         turn, slope = np.eye(3), np.zeros((3, 3))
         turn[[i, i, j, j], [i, j, i, j]] = c, -s, s, c
@@ -108,6 +110,7 @@ def rotation(angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         factors.append(turn)
         slopes.append(slope)
     (Ry, Rx, Rz), (dRy, dRx, dRz) = factors, slopes
+    # Product rule: each angle stands in one factor only.
     return Rz @ Rx @ Ry, np.stack([Rz @ Rx @ dRy, Rz @ dRx @ Ry, dRz @ Rx @ Ry])
 
 
@@ -120,7 +123,7 @@ def dots(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     J[:, :, K : K + 3] = scale * np.einsum("aij,nj->nia", dR[:, :2], p)
     J[:, :, K + 3] = scale * p @ R[:2].T
     J[:, :, K + 4 :] = np.eye(2)
-    return J[:, :, K + 3] + x[K + 4 :], J
+    return J[:, :, K + 3] + x[K + 4 :], J  # the column of l is the dot itself, before the shift
 
 
 start = np.zeros(K + 6)  # the likeliest face, at rest, from the front, ...
@@ -188,6 +191,7 @@ print(f"loss of the start: {value:.5f}, which is an error of {np.sqrt(value):.1%
 # vector in place of three angles, since angles fail when a head looks straight up or down. The value must be the same:
 
 # %%
+# A place with nothing special about it: at a minimum, or at zero, many mistakes do not show.
 somewhere = start + 0.1 * np.random.default_rng(0).standard_normal(len(start))
 of_library = LandmarkLoss(
     unknowns=Unknowns(n_id, named),
@@ -209,12 +213,12 @@ assert np.allclose(slope[:K], same_slope[:K]) and np.allclose(slope[K + 3 :], sa
 # A wrong gradient does not crash. The optimizer stops early, or crawls, and the result is a bit bad. So never trust a
 # gradient; test it. Taylor's theorem is the test: along any direction $d$,
 #
-# $$ f(x + h d) = f(x) + h\, g^T d + O(h^2) . $$
+# $$ f(x + h d) = f(x) + h\, g^T d + O(h^2) , $$
 #
-# If $g$ is the gradient, what is left over, $|f(x + hd) - f(x) - h\,g^T d|$, shrinks *a hundredfold* when $h$ shrinks
-# tenfold. If $g$ is wrong, a term with $h$ stays, and it shrinks only tenfold. In a plot with two logarithmic axes
-# these are slopes of 2 and 1. Below, the right gradient, and one with a typical mistake: the scale was forgotten in the
-# column of yaw.
+# where $O(h^2)$ stands for something that shrinks like $h^2$. If $g$ is the gradient, what is left over,
+# $|f(x + hd) - f(x) - h\,g^T d|$, shrinks *a hundredfold* when $h$ shrinks tenfold. If $g$ is wrong, a term with $h$
+# stays, and it shrinks only tenfold. In a plot with two logarithmic axes these are slopes of 2 and 1. Below, the right
+# gradient, and one with a typical mistake: the scale was forgotten in the column of yaw.
 
 
 # %%
@@ -247,8 +251,8 @@ plt.tight_layout()
 plt.show()
 
 # %% [markdown]
-# *Figure: Two falling lines in a doubly logarithmic plot: the remainder of the right gradient falls two decades for
-# each decade of the step until it reaches rounding error, that of the wrong one falls by one.*
+# *Figure: Two straight lines in a doubly logarithmic plot: with each decade of the step the remainder of the right
+# gradient shrinks by two decades, almost down to rounding error, that of the wrong one by one.*
 #
 # `tg.check_gradient` does this along several directions and tells the slopes. Use it on each loss that you write.
 
@@ -265,12 +269,21 @@ print(f"wrong: passed {bad.passed}, slopes {bad.slopes.round(2)}")
 # one radian moves the dots by an outer-eye distance; one standard deviation of a typical mode by a hundredth of that.
 # The loss is a narrow valley, and the gradient points at its walls, not along it.
 #
-# Two remedies. **Scale the unknowns** so that each has the same curvature. For a sum of squares the curvature is nearly
-# $H \approx \frac2N \sum_n \omega_n J_n^T J_n$ (the *Gauss-Newton* matrix), so measure unknown $k$ in units of $1 /
-# \sqrt{H_{kk}}$. And **remember**: L-BFGS keeps the last few steps and gradients, and learns from them how the valley
-# bends. It comes with nlopt, as do bounds: a `jawOpen` below 0 means nothing, so named expressions stay in $[0, 1]$.
+# Two remedies.
 #
-# So that the three have a definite goal, the loss already has the small prior that section 5 explains.
+# **Scale the unknowns** so that each has the same curvature. The second derivative of a sum of squares is
+# $H \approx \frac2N \sum_n \omega_n J_n^T J_n$. (Differentiate (4) once more; what is left out is multiplied by the
+# residuals, which are small. This is called the *Gauss-Newton* matrix.) So measure unknown $k$ in units of
+# $1 / \sqrt{H_{kk}}$.
+#
+# **Remember.** Near its minimum a smooth loss is a bowl, and the step to the bottom is $-H^{-1} g$ (Newton). It needs
+# the whole matrix $H$ and a solution with it, in each step. L-BFGS never forms $H$: it keeps the last few steps
+# $\Delta x$ and the changes $\Delta g$ of the gradient that came with them. Each such pair says how the bowl curves in
+# one direction, $H \Delta x \approx \Delta g$, and from a handful of them a good guess of $-H^{-1} g$ is put together
+# with a few dot products. It comes with nlopt, as do bounds: a `jawOpen` below 0 means nothing, so named expressions
+# stay in $[0, 1]$.
+#
+# So that the three walks below have a definite goal, the loss already has the small prior that section 5 explains.
 
 
 # %%
@@ -383,8 +396,8 @@ plt.show()
 #
 # Take the logarithm, turn the sign, multiply by $2\sigma^2/N$:
 #
-# $$ L(x) = \frac1N \sum_n \lVert r_n \rVert^2
-#    + w_r \Bigl( \sum_{k\,\in\,\text{id}} c_k^2 + 4\!\!\sum_{k\,\in\,\text{exp}} c_k^2 \Bigr),
+# $$ L(x) = \frac1N \sum_n \lVert r_n \rVert^2 +
+#    w_r \Bigl( \sum_{k\,\in\,\text{id}} c_k^2 + 4\!\!\sum_{k\,\in\,\text{exp}} c_k^2 \Bigr),
 #    \qquad w_r = \frac{\sigma^2}{N} . \tag{5} $$
 #
 # (That is Eq. 3 and 6 of the paper; the 4 says that expressions are spread by 0.5 and not by 1.) So the weight of a
@@ -420,7 +433,7 @@ def rms(r):
 
 
 def held_out(points, prior_weight):
-    """Error of each dot on a face that was fitted to three quarters of the others."""
+    """Error of the dots, each on a face that was fitted to other three quarters of them."""
     r = np.zeros((N, 2))
     for k in range(4):
         left = np.arange(N) % 4 == k
@@ -442,7 +455,7 @@ for _ in range(5):
 
 
 def error_3d(x, person):
-    """Root mean square distance of the vertices of the face, mm."""
+    """Root mean square distance of the vertices of the face, mm; pose is no matter."""
     return float(np.sqrt(((shape_of(x) - shape_of(person))[skin] ** 2).sum(axis=1).mean()))
 
 
@@ -499,24 +512,25 @@ plt.show()
 #
 # $$ L = \frac1N \sum_n \rho(\lVert r_n \rVert^2), \qquad \rho(u) = \frac{u}{1 + u/\kappa^2} . \tag{6} $$
 #
-# Its gradient is that of (3) with weights $\omega_n = \rho'(\lVert r_n \rVert^2) = (1 + \lVert r_n
-# \rVert^2/\kappa^2)^{-2}$. Where the weights are, for the moment, held fixed, it is the old problem. So: fit, look
-# which points lie far off, give them less weight, fit again. This is called *iteratively reweighted least squares*. The
-# width $\kappa$ must follow the errors themselves, and the median is a yardstick that outliers cannot bend.
+# Its gradient is that of (3) with weights
+# $\omega_n = \rho'(\lVert r_n \rVert^2) = (1 + \lVert r_n \rVert^2/\kappa^2)^{-2}$. Where the weights are, for the
+# moment, held fixed, it is the old problem. So: fit, look which points lie far off, give them less weight, fit again.
+# This is called *iteratively reweighted least squares*. The width $\kappa$ must follow the errors themselves, and the
+# median is a yardstick that outliers cannot bend.
 
 # %%
-u = np.linspace(0, 5, 200)
+e = np.linspace(0, 5, 200)  # residual / kappa
 fig, axes = plt.subplots(1, 2, figsize=(8, 2.8))
 kernels = {
-    "squares": (u**2, np.ones_like(u)),
-    "Huber": (np.where(u < 1, u**2, 2 * u - 1), np.minimum(1, 1 / np.maximum(u, 1e-9))),
-    "Geman-McClure": (u**2 / (1 + u**2), (1 + u**2) ** -2),
+    "squares": (e**2, np.ones_like(e)),
+    "Huber": (np.where(e < 1, e**2, 2 * e - 1), np.minimum(1, 1 / np.maximum(e, 1e-9))),
+    "Geman-McClure": (e**2 / (1 + e**2), (1 + e**2) ** -2),
 }
 for name, (cost, weight) in kernels.items():
-    axes[0].plot(u, cost, label=name)
-    axes[1].plot(u, weight, label=name)
-axes[0].set(xlabel="residual / width", ylabel="cost", ylim=(0, 5))
-axes[1].set(xlabel="residual / width", ylabel="weight")
+    axes[0].plot(e, cost, label=name)
+    axes[1].plot(e, weight, label=name)
+axes[0].set(xlabel="residual / κ", ylabel="cost", ylim=(0, 5))
+axes[1].set(xlabel="residual / κ", ylabel="weight")
 axes[0].legend(fontsize=8)
 plt.tight_layout()
 plt.show()
@@ -534,8 +548,8 @@ def robust_fit(points, rounds=6, kernel=lambda u: (1 + u) ** -2):
         squares = ((dots(x)[0] - points) ** 2).sum(axis=1)
         # Of 2D noise of variance 1 a coordinate, the squared length has the median 2 ln 2: so much for sigma. Points
         # within three sigma are to be believed.
-        width = max(9 * np.median(squares) / (2 * np.log(2)), 0.014**2)
-        weights = kernel(squares / width)
+        kappa_squared = max(9 * np.median(squares) / (2 * np.log(2)), 0.014**2)
+        weights = kernel(squares / kappa_squared)
         x = fit(points, weights=weights, x=x)
     return x, weights
 
@@ -584,10 +598,13 @@ print(
     f"library: inner landmarks off by {report.rms_percent:.2f} %, in {report.evaluations} evaluations ({report.status})"
 )
 print(f"ours:    {100 * rms(dots(fitted)[0] - q):.2f} %; the two faces differ by {difference:.1f} mm in 3D")
-smile = {name: round(w, 2) for name, w in of_library.expression_weights().items() if w > 0.1}
-print("expressions that it sees:", smile)
+strongest = sorted(of_library.expression_weights().items(), key=lambda item: -item[1])[:5]
+print("strongest expressions:", {name: round(w, 2) for name, w in strongest})
 
 # %% [markdown]
+# Read the expressions with care: no dot tells a wrinkled nose from a short one, so a bit of what is drawn as *shape*
+# comes out as *expression*, and the other way round.
+#
 # And what its kernel is good for: four points of another drawing, misplaced by three tenths of the outer-eye distance.
 
 # %%
@@ -612,8 +629,7 @@ print(f"the face moved by {moved_by(plain_fit):.1f} mm with squares, by {moved_b
 # %% [markdown]
 # In a drawing whose points miss the model by much everywhere, the median is large, and so is the width of the kernel:
 # an outlier then has to lie farther off to be called one.
-
-# %% [markdown]
+#
 # ## What to keep in mind
 #
 # - Forward model, residuals, loss, gradient, optimizer, prior, kernel: each fit of anything has these parts.

@@ -168,24 +168,55 @@ print(f"bar: {len(bar)} vertices, {len(F_bar)} triangles; L has {L_bar.nnz} numb
 #
 # $$ E(x) = \tfrac12 \int \lVert \nabla x \rVert^2 . \tag{5} $$
 #
+# (A constant costs nothing, a gentle slope little, ripples much. If $x$ is a coordinate of the surface itself, the
+# energy is that of a soap film, and its gradient says where the film pulls: nowhere on a flat piece, whatever its
+# triangles look like, and inwards where the surface is bent. That is what we want of a Laplacian coordinate.)
+#
 # Inside one triangle the slope is constant, so the integral is easy. Take the triangle with corners $i, j, o$. The hat
 # function of corner $i$ is 1 there and 0 at the others: it rises from the opposite edge, over the triangle's height
 # $h_i$, so that its gradient has length $1/h_i$ and stands at right angles on that edge. The angle between the
 # gradients of $i$ and $j$ is $180°$ minus the angle $\theta_o$ at the third corner. With the area $T$, this gives
 #
-# $$ \int \nabla\varphi_i \cdot \nabla\varphi_j
-#    = -\,T\, \frac{\cos\theta_o}{h_i h_j} = -\tfrac12 \cot\theta_o , $$
+# $$ \int \nabla\varphi_i \cdot \nabla\varphi_j =
+#    -T\, \frac{\cos\theta_o}{h_i h_j} = -\tfrac12 \cot\theta_o , $$
 #
-# where the last step uses the lengths $\ell$ of the sides: $h_i = 2T / \ell_{jo}$, $h_j = 2T / \ell_{io}$ and $2T =
-# \ell_{io}\,\ell_{jo}\sin\theta_o$. An edge has a triangle on either side, with angles $\alpha_{ij}$ and $\beta_{ij}$
-# that face it. (On a border there is only one; the other counts as 0.) The hats sum to 1 everywhere, so each row of the
-# matrix of all these integrals sums to 0, and that settles its diagonal:
+# where the last step uses the lengths $\ell$ of the sides: $h_i = 2T / \ell_{jo}$, $h_j = 2T / \ell_{io}$ and
+# $2T = \ell_{io}\,\ell_{jo}\sin\theta_o$. An edge has a triangle on either side, with angles $\alpha_{ij}$ and
+# $\beta_{ij}$ that face it. (On a border there is only one; the other counts as 0.) The hats sum to 1 everywhere, so
+# each row of the matrix $C$ of all these integrals sums to 0. With $C_{ij} = -w_{ij}$ beside the diagonal, that settles
+# the diagonal too:
 #
 # $$ w_{ij} = \tfrac12 (\cot\alpha_{ij} + \cot\beta_{ij}), \qquad
 #    (C x)_i = \sum_j w_{ij} (x_i - x_j), \qquad  E(x) = \tfrac12\, x^T C x . \tag{6} $$
 #
 # $C$ is the *cotangent Laplacian* (Pinkall and Polthier 1993). In this sign it is symmetric and positive semi-definite.
 # Many books have the other sign; always look.
+
+# %%
+i, j, o = np.array([[0.0, 0.0], [2.4, 0.0], [0.9, 1.5]])  # a triangle, to look at
+fig, axis = plt.subplots(figsize=(4.6, 2.9))
+axis.plot(*np.array([i, j, o, i]).T, c="0.2")
+for place, name, shift in ((i, "i", (-10, -10)), (j, "j", (5, -10)), (o, "o", (-3, 5)), (o, "\\theta_o", (-4, -26))):
+    axis.annotate(f"${name}$", place, xytext=shift, textcoords="offset points")
+for corner, other, name, colour, shift in ((j, i, "j", "tab:blue", (4, 2)), (i, j, "i", "tab:red", (-26, 2))):
+    foot = o + (other - o) * ((corner - o) @ (other - o)) / (
+        (other - o) @ (other - o)
+    )  # of the height, on the far side
+    height = corner - foot
+    gradient = height / (height @ height)  # as long as 1 / h
+    axis.plot(*np.array([corner, foot]).T, ":", c=colour)
+    axis.annotate(f"$h_{name}$", foot, xytext=(-14 if name == "j" else 5, 2), textcoords="offset points", color=colour)
+    axis.quiver(*(i + j + o) / 3, *gradient, color=colour, angles="xy", scale_units="xy", scale=1.2, width=0.008)
+    tip = (i + j + o) / 3 + gradient / 1.2
+    axis.annotate(rf"$\nabla\varphi_{name}$", tip, xytext=shift, textcoords="offset points", color=colour)
+axis.set_aspect("equal")
+axis.axis("off")
+plt.tight_layout()
+plt.show()
+
+# %% [markdown]
+# *Figure: A triangle with corners i, j and o, the angle at o, two heights as dotted lines, and arrows for the
+# gradients of the hat functions of i and j, which point at these corners at right angles to the opposite sides.*
 
 
 # %%
@@ -237,9 +268,9 @@ plt.show()
 # *Figure: Two copies of an uneven flat triangulation; with uniform weights red arrows lie in the plane at most points,
 # with cotangent weights there are none.*
 #
-# The cotangent matrix is blind to spacing. It pays for that: where both angles are large, $\alpha_{ij} + \beta_{ij} >
-# 180°$, the weight is negative, and a very thin triangle has a huge one. The library clamps the weights where it
-# deforms meshes with them.
+# The cotangent matrix is blind to spacing. It pays for that: where both angles are large,
+# $\alpha_{ij} + \beta_{ij} > 180°$, the weight is negative, and a very thin triangle has a huge one. The library clamps
+# the weights where it deforms meshes with them.
 #
 # ## 4 · What the eigenvectors know
 #
@@ -248,6 +279,9 @@ plt.show()
 # vertex:
 #
 # $$ C u = \mu\, M u . \tag{7} $$
+#
+# (Why eigenvectors? Look for the function that is least restless, $x^T C x$ as small as can be, among those of a fixed
+# size $x^T M x = 1$: where that is so, the two gradients are parallel, and that is (7), with $\mu$ as the energy.)
 #
 # Low $\mu$: $u$ changes slowly over the surface. High $\mu$: it ripples. On the unit sphere the answer is known
 # exactly: $\mu = l(l+1)$ for $l = 0, 1, 2, \dots$, each $2l + 1$ times: 0, 2, 2, 2, 6 (five times), 12 (seven times) …
@@ -402,8 +436,10 @@ assert np.allclose(sheared, tg.laplacian_align(bar, F_bar, ends, goals, weight=1
 #
 # $$ S_i = \sum_j e'_{ij}\, e_{ij}^T = U \Sigma V^T, \quad R_i = U\, \mathrm{diag}(1, 1, \det(U V^T))\, V^T . \tag{9} $$
 #
-# The singular value decomposition gives the answer (Kabsch 1976; lesson 2 meets it again as Procrustes). The
-# determinant keeps it a rotation: without it, a mirror image may fit better.
+# The singular value decomposition gives the answer (Kabsch 1976; in lesson 2 it is Procrustes). For
+# $\operatorname{tr}(R^T U \Sigma V^T) = \operatorname{tr}(Z \Sigma)$ with $Z = V^T R^T U$, whose columns have length 1,
+# so that no entry of it exceeds 1; the sum is greatest when the diagonal is all ones, $Z = I$, which is $R = U V^T$.
+# The determinant keeps it a rotation: without it, a mirror image may fit better.
 
 
 # %%
@@ -498,17 +534,14 @@ F_grid = np.r_[np.stack([a, a + 1, a + 42], axis=1), np.stack([a, a + 42, a + 41
 border = np.flatnonzero(np.abs(grid[:, :2]).max(axis=1) > 0.999)
 middle = 20 * 41 + 20
 pins, places = np.r_[border, middle], np.r_[grid[border], [[0, 0, 0.5]]]
-pulled = {
-    "membrane, C v' = 0": np.zeros(0),
-    "Laplacian coordinates (3)": tg.laplacian_align(grid, F_grid, pins, places, weight=np.inf),
-}
 C_grid = cotangent(grid, F_grid)
 free = np.setdiff1d(np.arange(len(grid)), pins)
 sheet = grid.copy()
 sheet[pins] = places
 sheet[free] = splu(C_grid[free][:, free].tocsc()).solve(-(C_grid[free][:, pins] @ places))
-pulled["membrane, C v' = 0"] = sheet
-pulled["ARAP (10)"] = arap(grid, F_grid, pins, places, pulled["Laplacian coordinates (3)"])[0]
+hill = tg.laplacian_align(grid, F_grid, pins, places, weight=np.inf)  # an infinite weight: anchors are met exactly
+tent, _ = arap(grid, F_grid, pins, places, hill)
+pulled = {"membrane, C v' = 0": sheet, "Laplacian coordinates (3)": hill, "ARAP (10)": tent}
 
 fig, axis = plt.subplots(figsize=(7, 2.8))
 row = slice(20 * 41, 21 * 41)
@@ -545,8 +578,8 @@ print({title: f"{value:.0f}°" for title, value in angles.items()})
 #
 # | | Laplacian coordinates (3) | turned along (8) | ARAP (10) |
 # |---|---|---|---|
-# | unknowns are solved | once | a few times | some ten times |
-# | large turns | shear, get thin | yes | yes |
+# | systems to solve | one | a few | tens |
+# | large turns | shear, get thin | are followed | are followed |
 # | single points | round hill | round hill | tent with a kink |
 # | linear in the anchors | yes | no | no |
 # | volume kept, no crossing | no | no | no |
@@ -558,6 +591,8 @@ print({title: f"{value:.0f}°" for title, value in angles.items()})
 #
 # Now the purpose. A drawing, its landmarks, and the fitted face of lesson 5. Its landmarks miss those of the drawing.
 # The picture says where they belong in x and y; the depth of the fitted face is kept, because nothing better is known.
+# (`fit.camera` projects; `unproject` is the way back for a given depth.) The head has parts that hang together with
+# nothing, such as the teeth: `loose="follow"` takes them along. For the comparison the front of the face is enough.
 
 # %%
 portrait = data_path("examples/portraits/beethoven.png")
@@ -567,13 +602,13 @@ points = fit.landmark_vertices
 goals68 = fit.camera.unproject(landmarks, fit.camera.depth(fit.vertices[points]))
 aligned = tg.laplacian_align(fit.vertices, fit.faces, points, goals68, loose="follow")
 
-kept, F_face = part(model.region("face"), model.faces)
-in_face = np.isin(points, kept)
-rows = np.searchsorted(kept, points[in_face])
+in_face = np.isin(points, kept)  # `kept` and `F_face` are those of section 4
+rows = np.searchsorted(kept, points[in_face])  # the landmarks as rows of the front
 front = fit.vertices[kept]
 pull = goals68[in_face] - front[rows]
 smooth = tg.laplacian_align(front, F_face, rows, front[rows] + pull) - front
-C_front = cotangent(front, F_face)
+
+C_front = cotangent(front, F_face)  # and the membrane, with the same displacements at the landmarks
 free = np.setdiff1d(np.arange(len(front)), rows)
 unique, first = np.unique(rows, return_index=True)
 needle = np.zeros_like(front)

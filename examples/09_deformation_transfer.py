@@ -51,7 +51,7 @@ def show(pictures, titles, *, rows=1, side=2.2):
 #
 # Before any face, take two bars. Each is a tube of square rings, closed at both ends. The source is thin and straight,
 # and a second version of it is bent to a quarter of a circle. The target is longer, and as fat as a bottle. Both have
-# the same triangles.
+# the same triangles. (How `bar` numbers its triangles does not matter here; skip it.)
 
 
 # %%
@@ -114,14 +114,16 @@ show(views, ["source S", "source, deformed", "target T", "displacements copied"]
 # 3 x 3 matrix $Q$ that takes the old edges to the new ones. Turning, growing and shearing are all matrices, and where
 # the triangle stands plays no part, because edges are differences.
 #
-# Two edges do not determine $Q$: nothing says yet what it does across the triangle. So a third edge is added, along
-# the normal, which leads to a *fourth vertex* $v_4$:
+# A matrix of three rows and columns is known when we know what it does to three directions, and two edges are only two:
+# nothing says yet what $Q$ does *across* the triangle. So a third edge is added, perpendicular to the other two. The
+# *cross product* of two vectors, `np.cross`, is such a direction: it is called the *normal* $n$ of the triangle. The
+# third edge leads to a made-up *fourth vertex* $v_4$:
 #
 # $$ v_4 = v_1 + \frac{n}{\sqrt{|n|}}, \qquad n = (v_2 - v_1) \times (v_3 - v_1). $$
 #
-# (The cross product $n$ is as long as twice the area of the triangle, a length *squared*. Divided by the root of its
-# length it is as long as a length, so that a triangle twice as large has a third edge twice as long. Exercise 3 shows
-# what goes wrong otherwise.) With the three edges as the columns of a matrix $E$,
+# (The cross product is as long as twice the area of the triangle: a length *squared*. Divided by the root of its length
+# it is a length again, so that a triangle twice as large has a third edge twice as long. Exercise 3 shows what goes
+# wrong otherwise.) With the three edges as the columns of a matrix $E$,
 #
 # $$ E = [\,v_2 - v_1,\; v_3 - v_1,\; v_4 - v_1\,], \qquad Q\,E = \tilde E \quad\Longrightarrow\quad
 # Q = \tilde E\,E^{-1}. $$
@@ -167,7 +169,7 @@ plt.show()
 # Compute $Q_j$ for every triangle $j$ of the source. They are the whole deformation. Now the target gets unknown new
 # vertices $x$, with gradients $Q'_j$ of its own, and these should be those of the source:
 #
-# $$ \min_x \sum_j \big\| Q_j - Q'_j(x) \big\|^2 . $$
+# $$ \min_x \sum_j \left\| Q_j - Q'_j(x) \right\|^2 . $$
 #
 # Why not just *set* $Q'_j = Q_j$? Because neighbouring triangles share vertices. If each did as it liked the surface
 # would fall apart; on the target the $Q_j$ do not fit together exactly, so they are met as well as possible, in the
@@ -178,34 +180,83 @@ plt.show()
 #
 # $$ Q'_j(x) = [\,x_2 - x_1,\; x_3 - x_1,\; x_4 - x_1\,]\; W_j , $$
 #
-# and every number in it is a sum of unknowns times constants. Put the differences into a matrix as well:
+# and every number in it is a sum of unknowns times constants. In this equation a vertex is a *column* of three numbers.
+# The differences are the four columns $x_1 \dots x_4$ times a matrix of $-1$, $0$ and $1$:
 #
 # $$ [\,x_2 - x_1,\; x_3 - x_1,\; x_4 - x_1\,] = [\,x_1, x_2, x_3, x_4\,]\; D, \qquad
 # D = \begin{bmatrix} -1 & -1 & -1 \\ 1 & 0 & 0 \\ 0 & 1 & 0 \\ 0 & 0 & 1 \end{bmatrix} $$
 #
-# so that $Q_j'^{\,T} = (D\,W_j)^T\,[x_1, x_2, x_3, x_4]^T$. That is three rows for triangle $j$, with four numbers
-# each; and the same rows serve the x, the y and the z of the vertices. Stack the rows of all triangles, and you have
-# a tall sparse matrix $A$, with a column for every vertex and one for every fourth vertex:
+# so $Q'_j = [\,x_1, x_2, x_3, x_4\,]\, (D\,W_j)$. In numpy a vertex is a *row*. Transposed, with $K_j = D\,W_j$ (4 x
+# 3),
 #
-# $$ \min_X \| A X - B \|^2, \qquad A\ (3m \times (n + m)), \quad X\ ((n + m) \times 3), \quad B\ (3m \times 3)
-# \text{ with the } Q_j^{\,T} . $$
+# $$ Q_j'^{\,T} = K_j^T \begin{bmatrix} x_1^T \\ x_2^T \\ x_3^T \\ x_4^T \end{bmatrix} . $$
+#
+# These are three equations for triangle $j$, each with four numbers, and they are the same for the x, the y and the z
+# of the vertices. Now write the equations of all triangles below each other. The unknowns are all vertices, and after
+# them all fourth vertices, one a triangle. Each equation has a number in four of their columns, and 0 in the others.
+# That is a tall matrix $A$ that is nearly empty, and the transposed $Q_j$ of the source are its right side $B$:
+#
+# $$ \min_X \| A X - B \|^2, \qquad A \in \mathbb{R}^{3m \times (n + m)}, \quad X \in \mathbb{R}^{(n + m) \times 3},
+# \quad B \in \mathbb{R}^{3m \times 3} . $$
+#
+# Let us see $A$ for the smallest closed mesh, a tetrahedron: four vertices, four triangles. The loops say it slowly:
+# corner $k$ of triangle $j$ has the numbers of row $k$ of $K_j$; they go to the three rows of this triangle, and to the
+# column of that corner.
+
+# %%
+D = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+
+
+def equations_slowly(T, F):
+    """A (3 m, n + m), number by number."""
+    n, m = len(T), len(F)
+    A = np.zeros((3 * m, n + m))
+    for j in range(m):
+        K = D @ np.linalg.inv(frames(T, F)[j])
+        columns = [*F[j], n + j]  # the three corners, and the fourth vertex of this triangle
+        for k in range(4):
+            for row in range(3):
+                A[3 * j + row, columns[k]] = K[k, row]
+    return A
+
+
+tetrahedron = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+sides = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+A_small = equations_slowly(tetrahedron, sides)
+figure, axis = plt.subplots(figsize=(3.4, 3.8), dpi=90)
+axis.imshow(A_small, cmap="coolwarm", vmin=-2, vmax=2)
+axis.set_xticks(range(8), [*(f"$x_{k}$" for k in range(4)), *(f"4th {j}" for j in range(4))], fontsize=7, rotation=90)
+axis.set_yticks(range(1, 12, 3), [f"triangle {j}" for j in range(4)], fontsize=7)
+plt.show()
+
+# %% [markdown]
+# *Figure: The matrix A of a tetrahedron: three rows for each of four triangles, with numbers in the columns of its
+# three corners and of its own fourth vertex, and zero elsewhere.*
 #
 # One thing is missing. Edges do not know where the mesh stands: shift all of it, and nothing changes. So some vertices
-# are *held*, at places that we name. One would do. Least squares with some unknowns given is solved by the normal
-# equations $A^T A\,X = A^T B$ without the rows of the given ones, and their part moved to the right side.
+# are *held*, at places that we name; one is enough. How does one solve least squares of which some unknowns are given?
+# The minimum of $\|A X - B\|^2$ satisfies the *normal equations* $N X = A^T B$ with $N = A^T A$. Sort the unknowns into
+# free and held ones. Of the equations those of the free unknowns are kept, and what the held ones contribute is known
+# and goes to the right side:
+#
+# $$ N_{free,free}\, X_{free} = (A^T B)_{free} - N_{free,held}\, X_{held} . $$
 #
 # ## Twenty lines
 
 
 # %%
-def meet(Q, F, T, held, places):
-    """Vertices (n, 3) whose gradients come nearest to Q (m, 3, 3); `held` (p,) go to `places` (p, 3)."""
-    W = np.linalg.inv(frames(T, F))
-    D = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+def equations(T, F):
+    """A (3 m, n + m): the transposed gradients of all triangles are A times vertices and fourth vertices."""
     n, m = len(T), len(F)
+    K = D @ np.linalg.inv(frames(T, F))  # (m, 4, 3)
     rows = np.broadcast_to(3 * np.arange(m)[:, None, None] + np.arange(3), (m, 4, 3))
     columns = np.broadcast_to(np.column_stack([F, n + np.arange(m)])[:, :, None], (m, 4, 3))
-    A = sp.csr_array(((D @ W).ravel(), (rows.ravel(), columns.ravel())), shape=(3 * m, n + m))
+    return sp.csr_array((K.ravel(), (rows.ravel(), columns.ravel())), shape=(3 * m, n + m))
+
+
+def meet(Q, F, T, held, places):
+    """Vertices (n, 3) whose gradients come nearest to Q (m, 3, 3); `held` (p,) go to `places` (p, 3)."""
+    A, n, m = equations(T, F), len(T), len(F)
     N, right = sp.csc_array(A.T @ A), A.T @ Q.transpose(0, 2, 1).reshape(3 * m, 3)
     free = np.setdiff1d(np.arange(n + m), held)
     X = np.zeros((n + m, 3))
@@ -219,12 +270,14 @@ def transfer(S, S_new, F, T, held, places):
     return meet(frames(S_new, F) @ np.linalg.inv(frames(S, F)), F, T, held, places)
 
 
+assert np.abs(equations(tetrahedron, sides).toarray() - A_small).max() == 0
+
+
 # %% [markdown]
-# `transfer` computes the gradients of the source and hands them to `meet`, which finds the vertices. There, `D @ W`
-# (m, 4, 3) holds for each triangle how its four corners enter the three columns of $Q'$: the entry of corner $k$ and
-# column $r$ goes to row $3j + r$ of $A$, which `rows` says, and to the column of that corner, which `columns` says.
-# `csr_array` builds a sparse matrix from such triples. `N` is $A^T A$, and `right` is $A^T B$. `splu` factors the free
-# part of `N`, and solves for x, y and z.
+# With `frames`, these are the twenty lines. `equations` does what the loops did, for all triangles at once: it lists
+# the number, the row and the column of every entry, and `csr_array` makes a *sparse* matrix of them, which stores
+# nothing else. `transfer` computes the gradients of the source and hands them to `meet`, which finds the vertices by
+# the formula above. `splu` factors the matrix of the free unknowns, and solves for x, y and z.
 #
 # ## The bottle bends
 #
@@ -251,10 +304,17 @@ def end_angle(V):
     return np.degrees(np.arctan2(along[1], along[0]))
 
 
+Q = frames(S_bent, F) @ np.linalg.inv(frames(S, F))
+Q_met = frames(T_bent, F) @ np.linalg.inv(frames(T, F))
+misfit = np.linalg.norm(Q_met - Q) / np.linalg.norm(Q - np.eye(3))
 angles = {name: end_angle(V) for name, V in (("source", S_bent), ("copied", copied), ("transferred", T_bent))}
 print({name: f"{angle:.1f} degrees" for name, angle in angles.items()})
+print(f"what the gradients of the bottle miss of those of the bar: {misfit:.0%} of the deformation")
 
 # %% [markdown]
+# The bottle turns as the bar does. Its gradients cannot be those of the bar everywhere, because it is fatter: where the
+# bar's outer side grows by a little, a fat bottle's has to grow by more. Least squares spreads that over all triangles.
+#
 # ## Three checks
 #
 # A method that cannot fail a test is not understood. Three things can be said about it before any picture:
@@ -454,7 +514,6 @@ print(f"the end rises by {raised[0]:.1f} and by {raised[1]:.1f}")
 # multiplied by a weight: a *blendshape*.
 
 # %%
-Q = frames(S_bent, F) @ np.linalg.inv(frames(S, F))
 once, twice = (meet(np.eye(3) + k * (Q - np.eye(3)), F, T, ring, T[ring]) for k in (1, 2))
 linearity = np.abs((twice - T) - 2 * (once - T)).max()
 assert linearity < 1e-9
@@ -464,9 +523,8 @@ assert linearity < 1e-9
 # twice as wide, but four times as thick. The gradient of a mere enlargement depends on the direction of each triangle
 # then, and those of the bottle, which has other directions, do not fit together any more: check 2 fails.
 
+
 # %%
-
-
 def plain_frames(V, F):
     """As `frames`, with a third edge as long as twice the area."""
     v1, v2, v3 = V[F[:, 0]], V[F[:, 1]], V[F[:, 2]]
@@ -485,8 +543,7 @@ thickening = np.linalg.svd(without[0])[1].max()
 # an exactly singular factor, or finds a pivot that is only rounding and gives huge numbers.
 
 # %%
-D = np.array([[-1.0, -1, -1], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-null = np.abs((D @ np.linalg.inv(frames(T, F))).sum(axis=1)).max()  # each row of A times the column of ones
+null = np.abs(equations(T, F).sum(axis=1)).max()  # A times the column of ones
 assert null < 1e-12
 
 # %%
@@ -510,4 +567,5 @@ numbers: dict[str, float] = {
     "linearity": linearity,
     "thickening_without_root": thickening,
     "null_space": null,
+    "misfit": misfit,
 }

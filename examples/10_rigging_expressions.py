@@ -165,8 +165,8 @@ recovered, recovered_few = np.abs(everything - beta).max(), np.abs(few - beta).m
 print(f"greatest error: {recovered:.3f} from all vertices, {recovered_few:.2f} from 68 noisy points")
 
 # %% [markdown]
-# *Figure: Bars of 46 weights: three are set; from all vertices exactly these come back, from noisy landmarks also small
-# false ones, where no landmark sees the difference.*
+# *Figure: Bars of 46 weights: three are set; from all vertices exactly these come back, from noisy landmarks also false
+# ones, where no landmark sees the difference.*
 #
 # Cheeks have no landmark, and several knobs of the mouth move the same few points alike. What points do not tell has to
 # come from elsewhere: from a prior, from time (`tg.LandmarkDriver`), or from the picture (`tg.VideoDriver`, lesson 16).
@@ -177,8 +177,8 @@ print(f"greatest error: {recovered:.3f} from all vertices, {recovered_few:.2f} f
 # shut while the jaw opens (chewing, "m") needs a blendshape that undoes the jaw's work on the lips alone: `mouthClose`,
 # a *corrective*. `tg.fit_mouth` makes it close, `tg.fit_lids` finds the eyeballs and makes the lids of a blink meet.
 #
-# The man's face is near the template, and hardly needs them. A manga girl does: her eyes are twice as high as those of
-# the head from which the blink comes. We compare her rig as transferred with the finished one.
+# The man's face is near the template, and hardly needs them. A manga girl does: her eyes are five times as high as
+# the man's. We compare her rig as transferred with the finished one.
 
 # %%
 manga = tg.read_landmarks(data_path("examples/portraits/manga_girl.pts"))
@@ -202,7 +202,7 @@ open_gap, open_lids = gap(done.vertices({"jawOpen": 0.6}), *lips), gap(done.neut
 gaps = [gap(r.vertices(sealed), *lips) for r in (raw, done)]
 shut = [gap(r.vertices({"eyeBlinkLeft": 1.0}), *lids) for r in (raw, done)]
 print(
-    f"jaw open: lips {open_gap:.0f} mm apart; with mouthClose {gaps[0]:.1f} mm (transferred), {gaps[1]:.1f} mm (finished)"
+    f"jaw open: lips {open_gap:.0f} mm apart; mouthClose: {gaps[0]:.1f} mm (transferred), {gaps[1]:.1f} mm (finished)"
 )
 print(f"left lids {open_lids:.0f} mm apart; in a blink {shut[0]:.0f} mm (transferred), {shut[1]:.0f} mm (finished)")
 

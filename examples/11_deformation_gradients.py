@@ -425,8 +425,8 @@ print("RMS distance from the mean face:", *(f"{d:.1f} mm" for d in unlike))
 # 1. The other way: a bar that is bent by 300 degrees. What is *half* of it, by displacements and by angles?
 # 2. Logarithms are added in Eq. 5. When is $\exp(a + b) = \exp(a)\exp(b)$ for rotations? Try two turns of 30 degrees
 #    about the same axis, and about two that are perpendicular.
-# 3. To find $w$ for one shape whose stretch is none, minimise $E(w) = \sum_i \sum_j c_{ij} \| e'_{ij} - \exp(w \log
-#    R_i)\, e_{ij} \|^2$ over one number. Write its derivative, and show with `tg.check_gradient` that it is right.
+# 3. Let one number $w$ scale the angles alone, with the gradients $\exp(w \log R_i)$ in Eq. 6 and no stretch. Write the
+#    derivative of this energy, and show with `tg.check_gradient` that it is right.
 #
 # ## Solutions
 #

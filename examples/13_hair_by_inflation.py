@@ -140,8 +140,8 @@ fig.colorbar(shown, ax=axes[2], shrink=0.8)
 plt.show()
 
 # %% [markdown]
-# *Figure: A drawn girl with blue hair, the white mask of her hair on black, and the height of the balloon over it, which
-# is greatest where the patch is broadest, above the forehead.*
+# *Figure: A drawn girl with blue hair, the white mask of her hair on black, and the height of the balloon over it,
+# which is greatest where the patch is broadest, above the forehead.*
 #
 # ## 3. Why a balloon is not enough
 #
@@ -174,9 +174,9 @@ dome_sticks_out = float((skin > dome)[covered].mean())
 print(f"{dome_sticks_out:.0%} sticks out of a balloon over hair and head together")
 
 # %% [markdown]
-# A balloon belongs over the whole silhouette, hair *and* head. Even so the forehead comes through. So the library takes,
-# at each point of the plane, the larger of two surfaces: the balloon, and the skin with some thickness of hair on it.
-# A plain maximum would leave a crease where they cross. Its smooth sister does not:
+# A balloon belongs over the whole silhouette, hair *and* head. Even so the forehead comes through. So the library
+# takes, at each point of the plane, the larger of two surfaces: the balloon, and the skin with some thickness of hair
+# on it. A plain maximum would leave a crease where they cross. Its smooth sister does not:
 #
 # $$\operatorname{smax}_w(a, b) = \tfrac12\Big(a + b + \sqrt{(a-b)^2 + w^2}\Big) \;\ge\; \max(a, b),$$
 #

@@ -9,9 +9,9 @@
 # %% [markdown]
 # # 14 · Stylize a photo
 #
-# **What must change before a photograph becomes a drawing?** Three things: the *shape* (larger eyes, a smaller chin, more
-# of what is special about this face), the *tones* (a few in place of thousands) and the *lines*. In this lesson you
-# write each in a few lines of numpy, and meet the library's version of it.
+# **What must change before a photograph becomes a drawing?** Three things: the *shape* (larger eyes, a smaller chin,
+# more of what is special about this face), the *tones* (a few in place of thousands) and the *lines*. In this lesson
+# you write each in a few lines of numpy, and meet the library's version of it.
 
 # %%
 import matplotlib.pyplot as plt
@@ -33,15 +33,16 @@ window = np.s_[20:290, 95:365]  # rows and columns that the figures show
 #
 # $$ f(x) = x + b(|x|)\,(s - 1)\,x, $$
 #
-# where the *bump* $b$ falls smoothly from 1 at the centre to 0 at the rim. Near the centre that is $s\,x$, beyond the rim
-# nothing moves. But what is pushed out by a large $s$ overtakes what lies before it: the picture folds.
+# where the *bump* $b$ falls smoothly from 1 at the centre to 0 at the rim. Near the centre that is $s\,x$, beyond the
+# rim nothing moves. But what is pushed out by a large $s$ overtakes what lies before it: the picture folds.
 #
 # The remedy is to prescribe a *velocity* and to let the points flow for one unit of time:
 #
-# $$ v(x) = b(|x|)\,\ln(s)\,x, \qquad \dot\varphi_t = v(\varphi_t), \quad \varphi_0(x) = x, \qquad \exp(v) := \varphi_1 . $$
+# $$ v(x) = b(|x|)\,\ln(s)\,x, \qquad \dot\varphi_t = v(\varphi_t), \quad \varphi_0(x) = x,
+#    \qquad \exp(v) := \varphi_1 . $$
 #
-# Near the centre $\dot\varphi = \ln(s)\,\varphi$ has the solution $e^{t\ln s}x$, which at $t = 1$ is $s\,x$ again. But two
-# points can never meet, for they would have the same velocity from there on, and, run backwards, the same past.
+# Near the centre $\dot\varphi = \ln(s)\,\varphi$ has the solution $e^{t\ln s}x$, which at $t = 1$ is $s\,x$ again. But
+# two points can never meet, for they would have the same velocity from there on, and, run backwards, the same past.
 
 
 # %%
@@ -82,11 +83,11 @@ axes[0].set_ylabel("place in the drawing")
 plt.show()
 
 # %% [markdown]
-# *Figure: Two curves from place to place. The displacement rises, falls on two red pieces, and rises again, so that three
-# places of the photograph come to one; the flow always rises.*
+# *Figure: Two curves from place to place. The displacement rises, falls on two red pieces, and rises again, so that
+# three places of the photograph come to one; the flow always rises.*
 #
-# In the plane the slope becomes the *Jacobian determinant*, the factor by which a small area grows; where it is negative,
-# the picture is folded. Along a flow it obeys Liouville's formula
+# In the plane the slope becomes the *Jacobian determinant*, the factor by which a small area grows; where it is
+# negative, the picture is folded. Along a flow it obeys Liouville's formula
 #
 # $$ \frac{d}{dt}\det D\varphi_t = (\operatorname{div} v)(\varphi_t)\,\det D\varphi_t
 #    \quad\Rightarrow\quad \det D\varphi_1 = \exp\!\int_0^1 (\operatorname{div} v)(\varphi_t)\,dt \;>\; 0 . $$
@@ -117,10 +118,10 @@ print(f"our flow and the library's differ by at most {flow_difference:.3f} px at
 print(f"there and back: within {there_and_back:.3f} px")
 print(f"area factors from the drawing back to the photograph: {areas.min():.2f} to {areas.max():.2f}, none negative")
 
-grid = np.stack(np.meshgrid(np.arange(95, 366, 9.0), np.arange(20, 291, 9.0)), axis=-1)
+grid = np.stack(np.meshgrid(np.arange(95, 366, 10.0), np.arange(20, 291, 10.0)), axis=-1)
 moved = warp.points(grid)
 extent = (window[1].start, window[1].stop, window[0].stop, window[0].start)
-fig, axes = plt.subplots(1, 3, figsize=(10, 3.4), layout="constrained")
+fig, axes = plt.subplots(1, 3, figsize=(8.4, 2.9), layout="constrained")
 axes[0].imshow(img[window], extent=extent)
 axes[1].imshow(warp.picture(img)[window], extent=extent)
 axes[2].imshow(np.full((*areas.shape, 3), 255, np.uint8)[:2, :2], extent=extent)
@@ -144,10 +145,10 @@ plt.show()
 #
 # $$ p'_k = p_k + e\,(p_k - m_k), $$
 #
-# with landmarks $p$, those of the average face $m$, and an exaggeration $e$; $e = -1$ gives the average face. The average must
-# be *laid on* the face first, or place, size and tilt would be exaggerated. With points as complex numbers, a
-# similarity is $z \mapsto a z + b$ (the modulus of $a$ is the scale, its angle the rotation), and the best one in the least
-# squares sense is, for centred points,
+# with landmarks $p$, those of the average face $m$, and an exaggeration $e$; $e = -1$ gives the average face. The
+# average must be *laid on* the face first, or place, size and tilt would be exaggerated. With points as complex
+# numbers, a similarity is $z \mapsto a z + b$ (the modulus of $a$ is the scale, its angle the rotation), and the best
+# one in the least squares sense is, for centred points,
 #
 # $$ a = \frac{\sum_k \bar m_k\, p_k}{\sum_k |m_k|^2} . $$
 #
@@ -169,7 +170,9 @@ def exaggerated(e: float) -> np.ndarray:
 
 rest = p - laid
 similarity_left = abs(np.vdot(m, rest)) / np.linalg.norm(m) / np.linalg.norm(rest)  # 0: nothing a similarity could add
-print(f"scale {abs(a):.3f}, turn {np.degrees(np.angle(a)):+.1f} degrees, differs by {abs(rest).mean():.1f} px on average")
+print(
+    f"scale {abs(a):.3f}, turn {np.degrees(np.angle(a)):+.1f} degrees, differs by {abs(rest).mean():.1f} px on average"
+)
 
 parts = [range(17), range(17, 22), range(22, 27), range(27, 31), range(31, 36), [*range(36, 42), 36]]
 parts += [[*range(42, 48), 42], [*range(48, 60), 48], [*range(60, 68), 60]]
@@ -187,8 +190,8 @@ plt.show()
 # *Figure: Four line drawings through the landmarks, from the average face over this one to two exaggerations, in which
 # the jaw gets narrower and the smile more one-sided.*
 #
-# The library's style `"caricature"` takes these differences as velocities at the landmarks, spreads them by Gaussians, and
-# follows the flow: even 2.6 times what is special does not fold the picture.
+# The library's style `"caricature"` takes these differences as velocities at the landmarks, spreads them by Gaussians,
+# and follows the flow: even 2.6 times what is special does not fold the picture.
 #
 # ## 4. Tones
 #
@@ -215,7 +218,7 @@ mean_jump = float(np.abs(levels - smooth[..., 0]).max())
 posterized = lab2rgb(np.dstack([levels, smooth[..., 1:]]))
 
 ramp = np.linspace(0, 100, 501)
-fig, axes = plt.subplots(1, 3, figsize=(10, 3.3), layout="constrained")
+fig, axes = plt.subplots(1, 3, figsize=(8.8, 2.9), layout="constrained")
 for slope in (0.5, 2.0, 8.0):
     axes[0].plot(ramp, quantized(ramp, width, slope), label=rf"$\varsigma = {slope:g}$")
 axes[0].set(xlabel="$L$", ylabel="$Q(L)$")
@@ -231,9 +234,9 @@ plt.show()
 # *Figure: The curve from lightness to quantized lightness, a line for a small slope and stairs for a large one; the
 # photograph; and the photograph in six levels, with borders across the skin where shadows happen to fall.*
 #
-# Look at the cheeks: the borders follow every reflection, not the form. An artist shades the *form*. So the library fits
-# the face and its light to the photograph first (lesson 7), and quantizes the *fitted* shading of the skin: two or three
-# tones whose borders run as the surface turns. What is not skin takes a small palette.
+# Look at the cheeks: the borders follow every reflection, not the form. An artist shades the *form*. So the library
+# fits the face and its light to the photograph first (lesson 7), and quantizes the *fitted* shading of the skin: two
+# or three tones whose borders run as the surface turns. What is not skin takes a small palette.
 #
 # ## 5. Lines
 #
@@ -248,7 +251,7 @@ plt.show()
 def xdog(L: np.ndarray, sigma: float, tau: float, epsilon: float, phi: float, k: float = 1.6) -> np.ndarray:
     """1 is paper, 0 is ink. L in [0, 1]."""
     D = (1 + tau) * gaussian_filter(L, sigma) - tau * gaussian_filter(L, k * sigma)
-    return np.where(D >= epsilon, 1.0, 1 + np.tanh(phi * (D - epsilon)))
+    return 1 + np.tanh(phi * np.minimum(D - epsilon, 0))
 
 
 L = lab[..., 0] / 100
@@ -265,9 +268,9 @@ plt.show()
 # *Figure: The photograph in ink three times; without the difference it is a soft threshold of the lightness, and the
 # larger the difference counts, the more it consists of lines.*
 #
-# That knows nothing of faces: it draws wrinkles as eagerly as lids, and what the light washes out gets no line at all. The
-# library has landmarks, so it *draws* lids, brows, lips, nose and jaw along them with pens that swell and taper, and
-# takes such filtered lines only outside the face.
+# That knows nothing of faces: it draws wrinkles as eagerly as lids, and what the light washes out gets no line at all.
+# The library has landmarks, so it *draws* lids, brows, lips, nose and jaw along them with pens that swell and taper,
+# and takes such filtered lines only outside the face.
 #
 # ## 6. All together
 
@@ -276,7 +279,7 @@ caricature = tg.stylize(img, landmarks, "caricature")
 colours = [len(np.unique(picture[window].reshape(-1, 3) // 32, axis=0)) for picture in (img, drawn.img, caricature.img)]
 print("different colours (in steps of 32):", dict(zip(("photograph", "chibi", "caricature"), colours, strict=True)))
 
-fig, axes = plt.subplots(1, 4, figsize=(11, 3.1), layout="constrained")
+fig, axes = plt.subplots(1, 4, figsize=(9.6, 2.7), layout="constrained")
 pictures = {"photograph": img, "chibi": drawn.img, "caricature": caricature.img, "chibi, for textures": drawn.texture}
 for ax, (name, picture) in zip(axes, pictures.items(), strict=True):
     ax.imshow(picture[window])
@@ -288,14 +291,15 @@ plt.show()
 # *Figure: The photograph; a chibi drawing with huge eyes and flat tones; a caricature with a broad smile; and the chibi
 # variant for textures, without shadows on the skin.*
 #
-# The last one is what a head is textured with: a head in 3D gets its light when it is rendered, so the drawing must not
-# bring its own. `tg.make_avatar(img, style="chibi")` does all of it, and
-# `tg.make_avatar(drawn.texture, drawn.landmarks)` is the same in two steps. Other styles: `"toon"`, `"ink"`, `"painted"`.
+# The last one is what a head is textured with: a head in 3D gets its light when it is rendered, so the drawing must
+# not bring its own. `tg.make_avatar(img, style="chibi")` does all of it, and `tg.make_avatar(drawn.texture,
+# drawn.landmarks)` is the same in two steps. Other styles: `"toon"`, `"ink"`, `"painted"`.
 #
 # ## Exercises
 #
-# 1. *Scaling and squaring.* $\exp(v) = \exp(v/2)\circ\exp(v/2)$. So start with the map $x + v(x)/2^n$ for a small step, and
-#    apply it to itself $n$ times (Arsigny et al. 2006). How many squarings are as good as our 20 Runge-Kutta steps?
+# 1. *Scaling and squaring.* $\exp(v) = \exp(v/2)\circ\exp(v/2)$. So start with the map $x + v(x)/2^n$ for a small
+#    step, and apply it to itself $n$ times (Arsigny et al. 2006). How many squarings are as good as our 20 Runge-Kutta
+#    steps?
 # 2. Check Liouville's formula for the eye of section 1 in the plane: compare the determinant by differences with the
 #    exponential of the integral.
 # 3. `strength` multiplies the field. Why is a warp of strength 0.5, done twice, that of strength 1, while averaging
@@ -303,9 +307,9 @@ plt.show()
 #
 # ## Solutions
 #
-# **1.** In the plane, for one eye. Each squaring samples the map at its own values. On a grid that needs interpolation,
-# which limits the precision; here the formula is used at the first step and points are pushed $2^n$ times, which is
-# the same map without interpolation. The error of $x + v/2^n$ per step falls with $4^{-n}$, of $2^n$ steps with $2^{-n}$.
+# **1.** In the plane, for one eye. A map that is known on a grid must be interpolated to be applied to itself. Here the
+# formula of $v$ is at hand, so the first map is simply applied $2^n$ times: what $n$ squarings make of it. A step of
+# length $2^{-n}$ has an error of the size $4^{-n}$, all $2^n$ steps together one of $2^{-n}$.
 
 
 # %%
@@ -349,7 +353,7 @@ for _ in range(100):
     path.append(flow(eye, path[-1], 0.01, 1))
 liouville = np.exp(np.trapezoid([divergence(at) for at in path], dx=0.01, axis=0))
 liouville_error = float(np.abs(determinant / liouville - 1).max())
-print(f"determinants {determinant.min():.2f} to {determinant.max():.2f}; Liouville's differ by {liouville_error:.1e} at most")
+print(f"determinants {determinant.min():.2f} to {determinant.max():.2f}; Liouville's differ by {liouville_error:.1e}")
 
 # %% [markdown]
 # **3.** The field does not depend on time, so to flow for half the time and then for the other half is to flow for the
@@ -361,7 +365,7 @@ half = flow(lambda q: 0.5 * eye(q), x)
 twice = flow(lambda q: 0.5 * eye(q), half)
 halves_error = float(np.abs(twice - flow(eye, x)).max())
 mean_is_no_half = float(np.abs((x + truth) / 2 - half).max())
-print(f"half strength twice: {halves_error:.1e}; the mean of start and end misses half the way by up to {mean_is_no_half:.3f}")
+print(f"half strength twice: {halves_error:.1e}; the mean of start and end is off by up to {mean_is_no_half:.3f}")
 
 # %%
 numbers: dict[str, float] = {

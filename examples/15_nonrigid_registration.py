@@ -9,10 +9,10 @@
 # %% [markdown]
 # # 15 · Nonrigid registration: your own head gets a rig
 #
-# **You have modelled or scanned a head. How does it get 46 expressions, when its triangles have nothing to do with those
-# of the template?** If each point of the template knew its partner on your head, expressions could be carried over
-# (lesson 9). This lesson finds the partners: first by a similarity, then by *nonrigid closest points*, in some thirty
-# lines of numpy and scipy, then by the library, which rigs the head with what it found.
+# **You have modelled or scanned a head. How does it get 46 expressions, when its triangles have nothing to do with
+# those of the template?** If each point of the template knew its partner on your head, expressions could be carried
+# over (lesson 9). This lesson finds the partners: first by a similarity, then by *nonrigid closest points*, in some
+# thirty lines of numpy and scipy, then by the library, which rigs the head with what it found.
 
 # %%
 import igl
@@ -30,9 +30,9 @@ model = tg.default_model()
 # %% [markdown]
 # ## Your head
 #
-# To see how well it works we need the truth, so we *make* the user's head: a random person of the model, whose surface is
-# then cut down to 9,000 triangles by collapsing edges. No vertex stays where it was, and nobody can tell from the result
-# which point was which. It is measured in metres, turned about, and far from the origin. Somebody has picked 51
+# To see how well it works we need the truth, so we *make* the user's head: a random person of the model, whose surface
+# is then cut down to 9,000 triangles by collapsing edges. No vertex stays where it was, and nobody can tell from the
+# result which point was which. It is measured in metres, turned about, and far from the origin. Somebody has picked 51
 # points on it by hand (brows, nose, eyes and mouth), half a millimetre off.
 
 # %%
@@ -90,7 +90,8 @@ plt.show()
 # covariance and its singular value decomposition give them in closed form (Umeyama 1991):
 #
 # $$ C = \sum_k \hat q_k \hat p_k^\top = U S W^\top, \quad D = \operatorname{diag}(1, 1, \det(UW^\top)), \quad
-#    R = U D W^\top, \quad s = \frac{\operatorname{tr}(S D)}{\sum_k \lVert \hat p_k\rVert^2}, \quad t = \bar q - sR\,\bar p . $$
+#    R = U D W^\top, \quad s = \frac{\operatorname{tr}(S D)}{\sum_k \lVert \hat p_k\rVert^2}, \quad
+#    t = \bar q - sR\,\bar p . $$
 #
 # $D$ keeps a reflection out.
 
@@ -116,21 +117,22 @@ print(f"your head is {1000 * s:.2f} times as large as the template; its landmark
 # %% [markdown]
 # ## 2. Closest points that resist bending
 #
-# *Iterated closest points*: let each vertex $x_i$ look for the closest point $p_i$ of your surface, move towards it, and look
-# again. If each simply jumps to its partner, neighbours jump to different places and the surface crumples. So the
-# displacements $d = x - x^0$ have an energy of their own:
+# *Iterated closest points*: let each vertex $x_i$ look for the closest point $p_i$ of your surface, move towards it,
+# and look again. If each simply jumps to its partner, neighbours jump to different places and the surface crumples. So
+# the displacements $d = x - x^0$ have an energy of their own:
 #
 # $$ E(d) = \underbrace{\sum_i a_i \lVert x_i - p_i\rVert^2}_{\text{partners}}
 #    + \underbrace{\sum_k w\lVert x_{i_k} - q_k \rVert^2}_{\text{landmarks}}
-#    + \lambda\Big(\underbrace{\beta\, d^\top L A^{-1} L\, d}_{\text{bending}} + \underbrace{\gamma\, d^\top L\, d}_{\text{stretching}}\Big) . $$
+#    + \lambda\Big(\underbrace{\beta\, d^\top L A^{-1} L\, d}_{\text{bending}}
+#    + \underbrace{\gamma\, d^\top L\, d}_{\text{stretching}}\Big) . $$
 #
 # $L$ is the cotangent Laplacian (lesson 6), $a_i$ the area about a vertex, $A$ their diagonal matrix. For given
 # partners $E$ is quadratic, so its minimum solves a linear system with the same matrix for x, y and z:
 #
 # $$ \big(A + W + \lambda(\beta L A^{-1} L + \gamma L)\big)\, d = A(p - x^0) + W(q - x^0) . $$
 #
-# The *stiffness* $\lambda$ begins high and falls: a stiff surface finds the large forms and cannot be led astray by a few
-# wrong partners; later it follows the details (Amberg, Romdhani and Vetter 2007: "optimal step nonrigid ICP").
+# The *stiffness* $\lambda$ begins high and falls: a stiff surface finds the large forms and cannot be led astray by a
+# few wrong partners; later it follows the details (Amberg, Romdhani and Vetter 2007: "optimal step nonrigid ICP").
 
 # %%
 front = model.region("face")
@@ -148,7 +150,7 @@ def closest(x: np.ndarray) -> np.ndarray:
 
 
 def register(levels: tuple[float, ...], iterations: int = 4, pull: float = 1.0) -> np.ndarray:
-    """Vertices (n, 3), mm, of the front laid on your head; all landmarks together pull ``pull`` times as all partners."""
+    """Vertices (n, 3), mm, of the front laid on your head; landmarks pull ``pull`` times as strongly as partners."""
     L = cotangent_laplacian(X0, T, clamp=0.05)
     double = np.linalg.norm(np.cross(X0[T[:, 1]] - X0[T[:, 0]], X0[T[:, 2]] - X0[T[:, 0]]), axis=1)
     area = np.bincount(T.ravel(), np.repeat(double / 6, 3), len(X0))
@@ -180,9 +182,7 @@ ours = register((1000.0, 100.0, 10.0, 1.0, 0.1, 0.01), 3)
 # %%
 def judged(x: np.ndarray) -> tuple[float, float, float]:
     """Median distance to the surface and to the truth, mm, and the share of triangles that face the wrong way."""
-    before, after = (
-        np.cross(y[T[:, 1]] - y[T[:, 0]], y[T[:, 2]] - y[T[:, 0]]) for y in (truth[used], x)
-    )
+    before, after = (np.cross(y[T[:, 1]] - y[T[:, 0]], y[T[:, 2]] - y[T[:, 0]]) for y in (truth[used], x))
     to_surface = np.median(np.linalg.norm(x - closest(x), axis=1))
     to_truth = np.median(np.linalg.norm(x - truth[used], axis=1))
     return float(to_surface), float(to_truth), float(((before * after).sum(1) < 0).mean())
@@ -213,12 +213,12 @@ plt.show()
 
 # %% [markdown]
 # *Figure: The front of the template four times in clay, and below in colours of the distance from the truth: as it is,
-# far off at nose and jaw; crumpled about eyes and lips where points jumped; smooth and mostly dark after our
+# far off at nose and forehead; crumpled about eyes, nose and lips where points jumped; smooth and mostly dark after our
 # registration, and after the library's.*
 #
-# What remains is mostly *along* the surface: a cheek has no marks by which one could tell a point from its neighbour. For
-# expressions that matters little, since neighbours move alike. A small distance to the surface alone says nothing:
-# the jump has none at all.
+# What remains is mostly *along* the surface: a cheek has no marks by which one could tell a point from its neighbour.
+# For most expressions that matters little, since neighbours move alike. A small distance to the surface alone says
+# nothing: the jump has none at all.
 #
 # ## 3. What the library adds
 #
@@ -239,8 +239,8 @@ print(f"{matched:.0%} of the face found a partner; {found.iterations} iterations
 # %% [markdown]
 # ## 4. A rig for your head
 #
-# `rig_mesh` registers, carries the expressions over by deformation transfer, closes what blinks leave open, and lets each
-# vertex of *your* mesh move as the point of the template that lies on it. Your mesh stays as it is.
+# `rig_mesh` registers, carries the expressions over by deformation transfer, closes what blinks leave open, and lets
+# each vertex of *your* mesh move as the point of the template that lies on it. Your mesh stays as it is.
 
 # %%
 landmarks = np.full((68, 3), np.nan)  # jaw points are not needed: a missing point is NaN
@@ -269,7 +269,7 @@ plt.show()
 #
 # Are these the right motions? The truth would be those of the person whose surface this is. Carry them to your vertices
 # by the triangle that each lies in, and compare. Written as one number: the length of the difference against the length
-# of the motion, over all expressions.
+# of the motion, for five expressions.
 
 # %%
 transferred = tg.DeformationTransfer(model.mean, model.faces, person)
@@ -289,17 +289,18 @@ for name in names:
 print("error against the motion:", ", ".join(f"{name} {error:.0%}" for name, error in errors.items()))
 
 # %% [markdown]
-# Large motions come over well. The blink is not meant to be the same: plain transfer leaves a gap between the lids of
-# another face, which `rig_mesh` closes.
+# Broad motions come over well, a blink less so: within a few millimetres of lid its motion falls from 12 mm to
+# nothing, so there it counts where along the surface the partner was found, and of your coarse mesh some fifty
+# vertices take part.
 #
-# On a command line: `toongeo rig head.obj --landmarks head.json -o head.glb`. To pick the points, any program will do that
-# writes 3D points, MeshLab's `.pp` for example.
+# On a command line: `toongeo rig head.obj --landmarks head.json -o head.glb`. To pick the points, any program will do
+# that writes 3D points, MeshLab's `.pp` for example.
 #
 # ## Exercises
 #
-# 1. Bending has the weight $\lambda\beta$ against an area. What is the unit of $\beta$? Read off the size of a bump that is
-#    smoothed away at each level, with $\beta = 1000$: for a wave $d = \sin(2\pi x/\ell)$ of length $\ell$ each application of
-#    $A^{-1}L$ multiplies by $(2\pi/\ell)^2$.
+# 1. Bending has the weight $\lambda\beta$ against an area. What is the unit of $\beta$? Read off the size of a bump
+#    that is smoothed away at each level, with $\beta = 1000$: for a wave $d = \sin(2\pi x/\ell)$ of length $\ell$ each
+#    application of $A^{-1}L$ multiplies by $(2\pi/\ell)^2$.
 # 2. Skip the stiff levels: `register((0.01,), 18)` has as many iterations. What becomes of it?
 # 3. Does the result depend on the frame and unit in which your head comes? It must not.
 # 4. How many picked points does it take? Leave out all but the corners of eyes and mouth and the tip of the nose.
@@ -315,8 +316,8 @@ half = {level: 2 * np.pi * (level * 1000.0) ** 0.25 for level in (1000.0, 10.0, 
 print("waves that are halved, mm:", ", ".join(f"level {level:g}: {length:.0f}" for level, length in half.items()))
 
 # %% [markdown]
-# **2.** A soft surface lies down on whatever is near, and is content with it: as close to your head, but with its points at
-# the wrong places.
+# **2.** A soft surface lies down on whatever is near, and is content with it: as close to your head, but with its
+# points at the wrong places.
 
 # %%
 hasty = judged(register((0.01,), 18))
@@ -325,8 +326,8 @@ print(f"at once: surface {hasty[0]:.2f} mm, truth {hasty[1]:.2f} mm")
 print(f"by stiffness: surface {ordered[0]:.2f} mm, truth {ordered[1]:.2f} mm")
 
 # %% [markdown]
-# **3.** The library brings the target to the source by the similarity of the landmarks, so all that follows sees the same
-# numbers, up to rounding.
+# **3.** The library brings the target to the source by the similarity of the landmarks, so all that follows sees the
+# same numbers, up to rounding.
 
 # %%
 again = rotation_exp(np.array([0.4, -1.0, 2.0]))
@@ -337,7 +338,8 @@ frame_difference = float(np.abs((two.vertices - 7) @ again / 39.37 - one.vertice
 print(f"in inches, turned and shifted: the same within {frame_difference:.1e} mm")
 
 # %% [markdown]
-# **4.** Seven points are enough for the pose and the size; the brows and the lips are then found by closest points alone.
+# **4.** Seven points are enough for the pose and the size; the brows and the lips are then found by closest points
+# alone.
 
 # %%
 few = np.array([36, 39, 42, 45, 48, 54, 30]) - 17

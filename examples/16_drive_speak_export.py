@@ -9,9 +9,9 @@
 # %% [markdown]
 # # 16 · Drive, speak, export
 #
-# **A rigged head can make any face. Who moves it, and where does it go?** A performance is a table of weights over time.
-# In this lesson you animate a head by hand, read weights off the landmarks of an actor, let the head speak, and write files
-# that other programs open. It needs lesson 10, where the expressions came from.
+# **A rigged head can make any face. Who moves it, and where does it go?** A performance is a table of weights over
+# time. In this lesson you animate a head by hand, read weights off the landmarks of an actor, let the head speak, and
+# write files that other programs open. It needs lesson 10, where the expressions came from.
 
 # %%
 import csv
@@ -36,15 +36,16 @@ folder = Path(tempfile.mkdtemp())  # what this lesson writes
 # %% [markdown]
 # ## 1. Weights over time
 #
-# A head with the face at rest $V_0$ and expressions $\Delta_k$ (displacements of all vertices) shows, at weights $w_k(t)$,
+# A head with the face at rest $V_0$ and expressions $\Delta_k$ (displacements of all vertices) shows, at weights
+# $w_k(t)$,
 #
 # $$ V(t) = V_0 + \sum_k w_k(t)\,\Delta_k . $$
 #
 # An animator sets a few *keyframes* and fills in between. Straight lines between them would start and stop with a
 # jerk; the polynomial $3\tau^2 - 2\tau^3$ leaves each key with speed 0.
 #
-# The names of the columns of a `Take` are the 46 expressions and eight directions of gaze, in the order of an `Animator`,
-# which computes the sum above thousands of times a second.
+# The names of the columns of a `Take` are the 46 expressions and eight directions of gaze, in the order of an
+# `Animator`, which computes the sum above thousands of times a second.
 
 # %%
 animator = tg.Animator(avatar)
@@ -95,13 +96,13 @@ ax.legend(fontsize=8)
 plt.show()
 
 # %% [markdown]
-# *Figure: Six frames of a man who is surprised and then smiles, above the curves of three weights, which rise and fall in
-# the shape of an S.*
+# *Figure: Six frames of a man who is surprised and then smiles, above the curves of three weights, which rise and fall
+# in the shape of an S.*
 #
 # ## 2. Somebody else's face
 #
-# Phones measure 52 such weights of an actor (ARKit; the app *Live Link Face* writes them as `.csv`). As weights mean the
-# same on every face, the recording drives any head. Our take written and read again:
+# Phones measure 52 such weights of an actor (ARKit; the app *Live Link Face* writes them as `.csv`). As weights mean
+# the same on every face, the recording drives any head. Our take written and read again:
 
 # %%
 write_live_link(folder / "take.csv", take, fps=fps)
@@ -111,8 +112,9 @@ header = (folder / "take.csv").read_text(encoding="utf-8").splitlines()[0].split
 print(f"{len(header)} columns: {', '.join(header[:6])} ...; read again: the same within {csv_difference:.0e}")
 
 # %% [markdown]
-# Without such a phone there are landmarks (lesson 2). What weights explain the points $q$ of a frame? In the frame of the
-# head, each weight moves the landmarks along known directions, so with $A$ (two rows a landmark, a column an expression)
+# Without such a phone there are landmarks (lesson 2). What weights explain the points $q$ of a frame? In the frame of
+# the head, each weight moves the landmarks along known directions, so with $A$ (two rows a landmark, a column an
+# expression)
 #
 # $$ \min_{0 \le w \le 1} \lVert A w - (q - q_0) \rVert^2 + \rho\,\lVert w \rVert^2 . $$
 #
@@ -158,21 +160,22 @@ plt.show()
 # *Figure: Three weights over time, the truth as a broad grey line; our estimates follow it with a jitter, the library's
 # without.*
 #
-# The library also finds the pose of the head in each frame (here it is known), smooths the landmarks *in the frame of the
-# head* by a One-Euro filter, both ways, and tells the noise from the residuals. `tg.VideoDriver().take(tg.read_video(...))`
-# does all of that on a film.
+# The library also finds the pose of the head in each frame (here it is known), smooths the landmarks *in the frame of
+# the head* by a One-Euro filter, both ways, and tells the noise from the residuals.
+# `tg.VideoDriver().take(tg.read_video(...))` does all of that on a film.
 #
 # ## 3. Speech
 #
-# A *viseme* is what a sound looks like: PP for p, b and m (lips closed), aa for an open mouth, and so on, fifteen in all.
-# Shown one after the other they make a puppet; people prepare the next sound while the last still sounds. Cohen and
-# Massaro (1993) let each segment $s$ with its weights $T_s$ *dominate* in its time and fade before and after:
+# A *viseme* is what a sound looks like: PP for p, b and m (lips closed), aa for an open mouth, and so on, fifteen in
+# all. Shown one after the other they make a puppet; people prepare the next sound while the last still sounds. Cohen
+# and Massaro (1993) let each segment $s$ with its weights $T_s$ *dominate* in its time and fade before and after:
 #
-# $$ F(t) = \frac{\sum_s D_s(t)\,T_s}{\sum_s D_s(t) + D_0}, \qquad D_s(t) = \alpha_s \exp\!\big(-\delta_s(t)/\theta_s\big), $$
+# $$ F(t) = \frac{\sum_s D_s(t)\,T_s}{\sum_s D_s(t) + D_0}, \qquad
+#    D_s(t) = \alpha_s \exp\!\big(-\delta_s(t)/\theta_s\big), $$
 #
-# where $\delta_s(t)$ is the time from $t$ to the middle half of the segment, $\theta_s$ its reach (one before, one after), and
-# $D_0 = 0.02$ a mouth at rest. A lip closure has a large $\alpha$ and a short reach: it wins, but only for a moment. One rule
-# is added: where lips must meet, they meet however far the jaw is open (`mouthClose`).
+# where $\delta_s(t)$ is the time from $t$ to the middle half of the segment, $\theta_s$ its reach (one before, one
+# after), and $D_0 = 0.02$ a mouth at rest. A lip closure has a large $\alpha$ and a short reach: it wins, but only for
+# a moment. One rule is added: where lips must meet, they meet however far the jaw is open (`mouthClose`).
 
 # %%
 spoken = ["sil", "PP", "aa", "PP", "aa", "sil"]  # "mama"
@@ -210,17 +213,18 @@ axes[1].legend(fontsize=8)
 plt.show()
 
 # %% [markdown]
-# *Figure: Above, the dominance of the segments of "mama", two high narrow peaks for the lips between two broad ones for the
-# vowels; below, the jaw, which opens twice, and the seal of the lips, which rises on the flanks of each PP.*
+# *Figure: Above, the dominance of the segments of "mama", two high narrow peaks for the lips between two broad ones
+# for the vowels; below, the jaw, which opens twice, and the seal of the lips, which rises on the flanks of each PP.*
 #
-# The jaw begins to open before the `aa` does, while the lips are still to be closed: there the seal holds them together.
-# `tg.speak("hello.json")` reads the timings of Rhubarb, TalkingHead or Azure; with a sound alone,
+# The jaw begins to open before the `aa` does, while the lips are still to be closed: there the seal holds them
+# together. `tg.speak("hello.json")` reads the timings of Rhubarb, TalkingHead or Azure; with a sound alone,
 # `tg.speak(sound="hello.wav")`, jaw and lips follow loudness and formants.
 #
 # ## 4. Files
 #
-# **GLB** is glTF in one file: a header of 12 bytes, then chunks, each with its length and kind. The first is JSON and says
-# what lies where in the second. Expressions are *morph targets*, the $\Delta_k$ from above, in metres. A take can go along.
+# **GLB** is glTF in one file: a header of 12 bytes, then chunks, each with its length and kind. The first is JSON and
+# says what lies where in the second. Expressions are *morph targets*, the $\Delta_k$ from above, in metres. A take can
+# go along.
 
 # %%
 glb = folder / "head.glb"
@@ -238,8 +242,9 @@ glb_difference = float(np.abs(back.vertices({"jawOpen": 0.7}) - avatar.vertices(
 print(f"read again: vertices the same within {glb_difference:.1e} mm")
 
 # %% [markdown]
-# **VRM** is a GLB with more words: which node is which bone of a person, and which targets make `happy`, `blink` or `aa`. So
-# programs for VTubers need not know our names. **HTML** is a page with sliders that asks nothing of a network.
+# **VRM** is a GLB with more words: which node is which bone of a person, and which targets make `happy`, `blink` or
+# `aa`. So programs for VTubers need not know our names. **HTML** is a page with sliders that asks nothing of a
+# network.
 
 # %%
 avatar.save(folder / "head.vrm")
@@ -253,20 +258,20 @@ asks = any(word in page for word in ('src="http', 'href="http', "@import", 'src=
 print(f"the page: {len(page) / 1e6:.1f} MB, loads anything from elsewhere: {asks}")
 
 # %% [markdown]
-# In JupyterLab, `avatar.show()` is that page in a frame, and `tg.AvatarWidget(avatar)` one whose `weights` Python and the
-# sliders share. They are not shown here, as a notebook with such a page in it is some megabytes large. On a command line:
-# `toongeo drive face.glb --weights take.csv -o take.mp4`, `toongeo speak face.glb --visemes hello.json -o hello.mp4`,
-# `toongeo view face.glb`.
+# In JupyterLab, `avatar.show()` is that page in a frame, and `tg.AvatarWidget(avatar)` one whose `weights` Python and
+# the sliders share. They are not shown here, as a notebook with such a page in it is some megabytes large. On a
+# command line: `toongeo drive face.glb --weights take.csv -o take.mp4`, `toongeo speak face.glb --visemes hello.json
+# -o hello.mp4`, `toongeo view face.glb`.
 #
 # ## Exercises
 #
 # 1. What is the largest acceleration of `jawOpen` with straight lines between the keys, and with the S? Try 30 and 120
 #    frames a second.
-# 2. Take coarticulation away: let each segment have its own weights between `start` and `end`, and nothing else. How fast must
-#    the jaw be, in mm a second at the chin? And with it?
+# 2. Take coarticulation away: let each segment have its own weights between `start` and `end`, and nothing else. How
+#    fast must the jaw be, in mm a second at the chin? And with it?
 # 3. In section 2, leave out the bounds, then $\rho$. Which weights go astray?
-# 4. `avatar.save(..., quantize=True)` stores displacements as integers of 16 bits. How much smaller is the file, and by how
-#    much are expressions off?
+# 4. `avatar.save(..., quantize=True)` stores displacements as integers of 16 bits. How much smaller is the file, and
+#    by how much are expressions off?
 #
 # ## Solutions
 #
@@ -303,9 +308,9 @@ speed_stepped, speed_spoken = chin_speed(stepped), chin_speed(speech.weights)
 print(f"stepped: {speed_stepped:.0f} mm/s; with coarticulation: {speed_spoken:.0f} mm/s")
 
 # %% [markdown]
-# **3.** What should be zero tells: the sum of the absolute weights of all expressions that the actor does not use, mean of the
-# frames. Without bounds opposites pay for each other, one of them negative; without $\rho$ also what hardly moves a
-# landmark gets a weight.
+# **3.** What should be zero tells: the sum of the absolute weights of all expressions that the actor does not use,
+# mean of the frames. Without bounds opposites pay for each other, one of them negative; without $\rho$ also what
+# hardly moves a landmark gets a weight.
 
 # %%
 differences = (film - at_rest).reshape(len(film), -1).T
@@ -325,7 +330,8 @@ avatar.save(folder / "plain.glb")
 sizes = [(folder / name).stat().st_size for name in ("small.glb", "plain.glb")]
 small = tg.load_avatar(folder / "small.glb")
 quantized_off = max(
-    float(np.abs(small.vertices({name: 1.0}) - avatar.vertices({name: 1.0})).max()) for name in ("jawOpen", "cheekPuffLeft")
+    float(np.abs(small.vertices({name: 1.0}) - avatar.vertices({name: 1.0})).max())
+    for name in ("jawOpen", "cheekPuffLeft")
 )
 print(f"{sizes[0] / 1e6:.1f} MB against {sizes[1] / 1e6:.1f} MB; off by {quantized_off:.3f} mm at most")
 

@@ -13,12 +13,23 @@ def gathered_pages(app=None) -> None:
     for source, page in PAGES.items():
         if page.startswith("docs/project/") and (ROOT / source).is_file():
             text = (ROOT / source).read_text(encoding="utf-8")
-            _write(ROOT / page, repository_links(text, source, page))
+            _write(ROOT / page, _one_title(repository_links(text, source, page)))
     notebooks = sorted((ROOT / "examples").glob("[0-9][0-9]_*.ipynb"))
     for notebook in notebooks:
         _write(DOCS / "learn" / notebook.name, _lesson(notebook))
     for stale in set((DOCS / "learn").glob("*.ipynb")) - {DOCS / "learn" / path.name for path in notebooks}:
         stale.unlink()
+
+
+def _one_title(text: str) -> str:
+    """A licence that is quoted with its own title becomes a section."""
+    lines, titles, fenced = text.split("\n"), 0, False
+    for k, line in enumerate(lines):
+        fenced ^= line.startswith("```")
+        if line.startswith("# ") and not fenced:
+            titles += 1
+            lines[k] = line if titles == 1 else f"#{line}"
+    return "\n".join(lines)
 
 
 def _lesson(notebook: Path) -> str:

@@ -6,7 +6,6 @@ from functools import cache
 
 from docutils import nodes
 from repository_links import ROOT
-from sphinx import addnodes
 from sphinx.util.nodes import make_refnode
 
 __all__ = ["setup"]
@@ -20,10 +19,15 @@ def _page(domain, name):
     return next((domain.objects[n] for n in (f"toongeo.{name}", name) if n in domain.objects), None)
 
 
+def _around(node):
+    while node := node.parent:
+        yield node
+
+
 def _link(app, doctree, docname) -> None:
     domain = app.env.get_domain("py")
     for literal in list(doctree.findall(nodes.literal)):
-        if isinstance(literal.parent, nodes.reference | nodes.title | addnodes.pending_xref):
+        if any(isinstance(around, nodes.reference | nodes.title) for around in _around(literal)):
             continue
         match = _NAME.fullmatch(literal.astext())
         there = match and _page(domain, match[1])

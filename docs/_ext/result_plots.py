@@ -146,7 +146,7 @@ def _draw(chart: Chart, labels: list[str], values: list[list[float]], theme: str
     width = 0.8 / len(chart.values)
     with plt.rc_context(style):
         figure, axes = plt.subplots(
-            figsize=(8, 1.1 + 0.3 * len(labels) * len(chart.values) ** 0.5), layout="constrained"
+            figsize=(6, 1.1 + 0.3 * len(labels) * len(chart.values) ** 0.5), layout="constrained"
         )
         for k, column in enumerate(chart.values):
             places = [row + (k - (len(chart.values) - 1) / 2) * width for row in range(len(labels))]

@@ -78,16 +78,16 @@ def test_a_neutral_frame_that_is_told_is_neutral(performance):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"neutral": 9.0}, "neutral: expected a time within the film of 0.40 s, got 9.0"),
+        ({"neutral": 9.0}, "neutral: expected a time in the film of 0.60 s, got 9.0"),
         ({"neutral": np.nan}, "neutral: expected a number of seconds >= 0, got nan"),
         ({"neutral": -1}, "neutral: expected a number of seconds >= 0, got -1"),
-        ({"neutral": 0.2}, "neutral: expected a frame in which the whole face is seen, got frame 2"),
+        ({"neutral": 0.5}, "neutral: expected a time at which the whole face is seen, got 0.5"),
         ({"neutral": 0, "performer": np.zeros((68, 2))}, "neutral: expected none for a performer whose neutral face"),
     ],
 )
 def test_a_neutral_frame_that_cannot_be_is_refused(performance, options, message):
     with pytest.raises(ValueError, match=message):
-        VideoDriver(**options).frames(performance.frames[8:12], performance.fps)
+        VideoDriver(**options).frames(performance.frames[8:14], performance.fps)
 
 
 def test_it_is_a_driver_and_names_what_is_wrong():

@@ -1,7 +1,7 @@
 // node browse.mjs URL STEPS.json FOLDER: open a page in headless Chromium, do the steps, tell what happened as JSON.
 // A step is one of {shot: file}, {slider: name, value}, {click: selector}, {key: name, on: selector}, {run: script},
 // {download: selector, file}, {wait: script}, {choose: selector, value}, {drag: script, by | to, shift}, {tap: script, times},
-// {touch: script}, {page: file}, {size: [width, height]}, {axe: context}, {media: features}, {cpu: true}, {frame: script, until}. Scripts of drags and taps give places
+// {touch: script}, {open: path}, {page: file}, {size: [width, height]}, {axe: context}, {media: features}, {cpu: true}, {frame: script, until}. Scripts of drags and taps give places
 // in CSS pixels, those of touches frames of places of fingers. Printed: results of the runs, console messages, requests.
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -63,6 +63,8 @@ async function act(step) {
       const type = k === 0 ? 'touchStart' : k === frames.length ? 'touchEnd' : 'touchMove';
       await session.send('Input.dispatchTouchEvent', { type, touchPoints: fingers.map(([x, y], id) => ({ x, y, id })) });
     }
+  } else if (step.open) {
+    await page.goto(new URL(step.open, url).href);
   } else if (step.page) {
     await settle();
     await page.screenshot({ path: join(folder, step.page), animations: 'disabled' });

@@ -17,6 +17,7 @@ from toongeo.app.making.made_head import MadeHead
 from toongeo.app.making.make_options import MakeOptions
 from toongeo.arrays import Bytes, Floats
 from toongeo.avatar.make_avatar import STAGES, make_avatar
+from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import LandmarkFile, read_image, write_image
 from toongeo.model.ibug68 import INNER
 from toongeo.pipeline import FaceFit, held_out_errors
@@ -104,10 +105,11 @@ def _aside(options: MakeOptions) -> TextIO:
 
 
 def _held_out(img: Bytes, points: Floats, options: MakeOptions) -> dict[str, float] | None:
-    """None where the face is aligned in another way, or has too few points."""
-    if options.method != "cartoon" or np.isfinite(points[INNER]).all(1).sum() < _FEWEST_HELD_OUT:
+    """None where there are too few points."""
+    if np.isfinite(points[INNER]).all(1).sum() < _FEWEST_HELD_OUT:
         return None
     try:
-        return held_out_errors(img, points, model=options.model)
+        align = align_caricature if options.method == "caricature" else None
+        return held_out_errors(img, points, model=options.model, align=align)
     except ValueError:  # what is left cannot be a face
         return None

@@ -281,7 +281,8 @@ class Avatar(AvatarStages):
             parsed (some hundred kB). A file with another crop or other names never is.
         unlit : bool or "auto"
             Whether viewers show the colours as they are (``KHR_materials_unlit``, MToon in a ``.vrm``) or light them.
-            "auto": drawings as they are, photographs and paintings lit.
+            "auto": drawings as they are, photographs and paintings lit. A ``.usdz`` is always lit: its material, a
+            UsdPreviewSurface, knows nothing else.
         meta : toongeo.io.VrmMeta
             Name, authors and licence; by default nothing is allowed to others.
         title : str

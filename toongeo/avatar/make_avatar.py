@@ -12,7 +12,7 @@ from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.making.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.making.beyond import beyond_warnings
 from toongeo.avatar.making.rigged import mouth_warnings, posed, rigged
-from toongeo.avatar.making.styled import check_stylizer, styled
+from toongeo.avatar.making.styled import check_stylizer, drawn_hair, styled
 from toongeo.avatar.missing_parts import missing_parts
 from toongeo.avatar.report import AvatarReport, detection_warnings, eye_warnings, landmark_errors, shape_warnings
 from toongeo.caricature.align_caricature import align_caricature
@@ -21,6 +21,7 @@ from toongeo.metrics import mesh_quality
 from toongeo.model import MorphableModel, default_model
 from toongeo.pipeline import (
     AlignedFace,
+    ClassicalParser,
     FaceFit,
     aim_eyes,
     align_face,
@@ -206,7 +207,11 @@ def make_avatar(
         given = landmarks
         fit = fit_3dmm(img, landmarks, model=model)
     clock.start("parse")
-    parse = parse_face(img, landmarks, fit, parser=plugin(parser, "parser"), hair_mask=drawn)
+    by: FaceParser | None = plugin(parser, "parser")
+    hair_seen = None if drawing is None else drawn_hair(drawing)
+    if by is None and drawn is None and hair_seen is not None:
+        by = ClassicalParser(hair_finder=lambda *_: hair_seen)  # it is not looked for twice
+    parse = parse_face(img, landmarks, fit, parser=by, hair_mask=drawn)
     if snap:
         clock.start("fit")
         landmarks = snap_eyes(landmarks, parse)

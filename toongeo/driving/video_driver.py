@@ -22,6 +22,7 @@ from toongeo.protocols import LandmarkDetector
 __all__ = ["CAUTION", "VideoDriver"]
 
 _NOISE = 0.01  # s.d. of a weight of a still face
+_NEAR = 0.25  # s: nobody reads the time of a frame off a player more exactly
 CAUTION = 5.0  # of LandmarkDriver, for points that were found; chosen on films of astronaut and moustache_man
 
 
@@ -91,7 +92,7 @@ class VideoDriver:
         seen = track_landmarks(frames, fps=fps, detector=self._detector).seen
         if self._performer is not None:
             return LandmarkDriver(self._performer, caution=CAUTION).frames(seen, fps)
-        reader = reader_of_film(frames, seen, self._frame_at(len(seen), fps))
+        reader = reader_of_film(frames, seen, self._frame_at(seen, fps))
         there = np.array([is_seen(landmarks) for landmarks in seen])
         weights = np.zeros((len(seen), len(reader.skin.rig.names)))
         for k, (frame, landmarks) in enumerate(zip(frames, seen, strict=True)):
@@ -104,13 +105,17 @@ class VideoDriver:
         weights = smoothed_both_ways(weights[:, :, None], _NOISE, fps)[:, :, 0]
         return reader.skin.rig.all_weights(weights)
 
-    def _frame_at(self, count: int, fps: float) -> int | None:
-        """The frame in which the performer is said to be neutral."""
+    def _frame_at(self, seen: Floats, fps: float) -> int | None:
+        """The frame in which the performer is said to be neutral, or the next to it that shows the whole face."""
         if self._neutral is None:
             return None
-        if (frame := round(self._neutral * fps)) >= count:
-            raise ValueError(f"neutral: expected a time within the film of {count / fps:.2f} s, got {self._neutral}")
-        return frame
+        if round(self._neutral * fps) >= len(seen):
+            raise ValueError(f"neutral: expected a time in the film of {len(seen) / fps:.2f} s, got {self._neutral}")
+        away = np.abs(np.arange(len(seen)) / fps - self._neutral)
+        away[~np.isfinite(seen).all(axis=(1, 2))] = np.inf
+        if away.min() > max(_NEAR, 1 / fps):
+            raise ValueError(f"neutral: expected a time at which the whole face is seen, got {self._neutral}")
+        return int(away.argmin())
 
     def take(self, video: Video) -> Take:
         """The same with its times.

@@ -7,6 +7,7 @@ import numpy as np
 
 from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only, restored
+from toongeo.protocols.face_parse import HairMask
 
 __all__ = ["PictureWarp", "Stylized", "Stylizer"]
 
@@ -60,6 +61,8 @@ class Stylized:
     texture : (H, W, 3) uint8 RGB
         The variant that an avatar is textured with: without light, which the avatar has of its own, and without lines
         that would be wrong once it moves.
+    hair : HairMask, optional
+        The hair of the photograph, in its frame, if the stylizer has looked for it: it need not be found twice.
 
     Examples
     --------
@@ -83,6 +86,7 @@ class Stylized:
     landmarks: np.ndarray
     warp: PictureWarp
     texture: np.ndarray
+    hair: HairMask | None = None
 
     __repr__ = brief_repr
     __setstate__ = restored

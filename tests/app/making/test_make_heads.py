@@ -10,6 +10,7 @@ from toongeo.app.cli import main
 from toongeo.app.making.head_jobs import head_jobs
 from toongeo.app.making.make_options import MakeOptions
 from toongeo.app.making.same_person import same_person
+from toongeo.caricature.align_caricature import align_caricature
 from toongeo.io import read_image, read_landmarks, write_image, write_landmarks
 
 PICTURE, POINTS = str(PORTRAITS / "moustache_man.png"), str(PORTRAITS / "moustache_man.pts")
@@ -103,6 +104,15 @@ def test_a_drawn_head_is_told_by_its_drawing(stand_in, avatar, tmp_path, monkeyp
     arguments = ["--landmarks", POINTS, "-o", str(tmp_path / "a.ply"), "--style", "toon"]
     assert main(["make", PICTURE, *arguments]) == 0
     assert seen == [(drawing.img, drawing.landmarks)]
+
+
+@pytest.mark.parametrize(("method", "align"), [("cartoon", None), ("caricature", align_caricature)])
+def test_held_out_points_are_foretold_by_the_method_that_made_the_head(stand_in, tmp_path, monkeypatch, method, align):
+    seen = []
+    monkeypatch.setattr("toongeo.app.make.held_out_errors", lambda *_, align, **__: seen.append(align) or {})
+    arguments = ["--landmarks", POINTS, "-o", str(tmp_path / "a.ply"), "--method", method]
+    assert main(["make", PICTURE, *arguments]) == 0
+    assert seen == [align]
 
 
 def test_json_is_all_that_is_printed(stand_in, tmp_path, capsys, avatar):

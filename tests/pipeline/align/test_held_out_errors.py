@@ -1,10 +1,12 @@
 """Points that were left out are foretold by the others."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from toongeo.avatar.make_avatar import make_avatar
-from toongeo.pipeline import fit_3dmm, held_out_errors
+from toongeo.pipeline import align_face, fit_3dmm, held_out_errors
 from toongeo.render import ScaledOrthographicCamera
 
 
@@ -31,6 +33,23 @@ def test_missing_points_are_left_out_of_the_errors(artist, exact):
     some[27:36] = np.nan
     errors = held_out_errors(None, some, model=artist)
     assert np.isnan(errors["nose"]) and errors["mouth"] < 0.05
+
+
+def test_the_face_may_be_aligned_in_another_way_and_never_sees_what_is_left_out(artist, exact):
+    """An alignment that misses by 10 px to the right: that is the error of what it was not shown, more or less."""
+    shown = []
+
+    def beside(fit, landmarks):
+        shown.append(np.isfinite(landmarks).all(axis=1))
+        face = align_face(fit, landmarks, noise=0)
+        camera = face.camera
+        return replace(
+            face, camera=ScaledOrthographicCamera(camera.scale, camera.rotation, camera.translation + [10.0, 0.0])
+        )
+
+    errors = held_out_errors(None, exact, model=artist, align=beside)
+    assert np.sum(shown, axis=0)[17:].tolist() == [3] * 51  # of four folds each inner point is left out of one
+    assert errors["inner51"] * np.linalg.norm(exact[45] - exact[36]) == pytest.approx(10, rel=0.2)
 
 
 def test_a_given_fit_is_kept(cartoon):

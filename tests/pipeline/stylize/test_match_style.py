@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 import toongeo as tg
+from toongeo.colour.cielab import cielab
+from toongeo.pipeline.stylize.appearance.line_weight import drawn_lines
+from toongeo.pipeline.stylize.face_frame import face_frame
 from toongeo.pipeline.stylize.match_style import _mapped
 
 
@@ -31,6 +34,24 @@ def test_skin_takes_the_references_colour(cartoon):
     goal = other[there[1], there[0]].astype(int)
     before, after = img[cheek[1], cheek[0]].astype(int), result[cheek[1], cheek[0]].astype(int)
     assert np.abs(after - goal).sum() < 0.5 * np.abs(before - goal).sum()
+
+
+def test_a_photograph_gets_the_lines_and_tones_of_a_drawing(cartoon):
+    img, points = cartoon("astronaut")
+    other, others = cartoon("manga_girl")
+    result = tg.match_style(img, other, points, others)
+    size, size_there = face_frame(points).size, face_frame(others).size
+    before, after, goal = (
+        drawn_lines(cielab(picture), length) for picture, length in ((img, size), (result, size), (other, size_there))
+    )
+    assert abs(after.width - goal.width) < max(abs(before.width - goal.width), 0.004)
+    assert after.cover.mean() > 0.005
+    cheek = np.rint(points[[2, 31]].mean(axis=0)).astype(int)
+    patch = cielab(result[cheek[1] - 4 : cheek[1] + 5, cheek[0] - 4 : cheek[0] + 5])
+    flat = np.abs(patch[..., 0] - np.median(patch[..., 0])) < 1.5  # one tone, as in the drawing, but for lines
+    assert flat.mean() > 0.7
+    eye = np.rint(points[[37, 41]].mean(axis=0)).astype(int)
+    assert np.abs(result[eye[1], eye[0]].astype(int) - img[eye[1], eye[0]]).max() < 90  # it is still there
 
 
 def test_what_is_refused(cartoon):

@@ -1,5 +1,7 @@
 """Drawings of photographs."""
 
+from importlib import import_module
+
 import cv2
 import numpy as np
 import pytest
@@ -8,7 +10,10 @@ import toongeo as tg
 from tests.pipeline.stylize.test_velocity_warp import MIRROR
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline import STYLES
+from toongeo.pipeline.parse.hair.segment_hair import segment_hair
 from toongeo.pipeline.stylize.style_rules import style_rules
+
+find_hair_module = import_module("toongeo.pipeline.parse.find_hair")  # whose name is its function's, too
 
 
 def near(landmarks, shape):
@@ -166,6 +171,25 @@ def test_an_avatar_of_a_drawing(cartoon, tmp_path):
     again = tg.load_avatar(tmp_path / "toon.glb")
     np.testing.assert_array_equal(again.face.vertices, avatar.face.vertices)
     assert again.style is None  # the drawing is not kept
+
+
+def test_the_hair_of_a_photograph_is_that_of_its_avatar(cartoon, monkeypatch):
+    img, points = cartoon("astronaut")
+    searches = []
+
+    def counted(*arguments, **more):
+        searches.append(1)
+        return segment_hair(*arguments, **more)
+
+    monkeypatch.setattr(find_hair_module, "segment_hair", counted)
+    avatar = tg.make_avatar(img, points, style="chibi", texture_size=256)
+    assert len(searches) == 1
+    found, moved = avatar.style.hair, avatar.parse.hair
+    assert found.mask.shape == moved.mask.shape == img.shape[:2]
+    rows, columns = np.nonzero(cv2.erode(found.mask.astype(np.uint8), np.ones((9, 9))))
+    at = np.rint(avatar.style.warp.points(np.column_stack([columns, rows]).astype(float))).astype(int)
+    inside = (at >= 0).all(axis=1) & (at < img.shape[1::-1]).all(axis=1)
+    assert moved.mask[at[inside, 1], at[inside, 0]].mean() > 0.98
 
 
 def test_whoever_draws_otherwise_is_asked_once(cartoon):

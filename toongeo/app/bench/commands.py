@@ -5,6 +5,9 @@ from pathlib import Path
 
 __all__ = ["add_bench"]
 
+_BENCHMARKS = Path(__file__).parents[3] / "benchmarks"
+_QUICK_SECONDS = 570  # ten minutes with what it takes to begin
+
 
 def add_bench(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
     """Add ``bench`` to the commands of ``toongeo``."""
@@ -22,6 +25,15 @@ def add_bench(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -
         if name in ("table1", "table2"):
             table.add_argument("--eos", type=Path, metavar="MODELS", help="compare eos-py too, with its model files")
         table.set_defaults(run=run)
+    every = benches.add_parser("all", help="run the benchmarks of a checkout and write its RESULTS.md anew")
+    every.add_argument("--quick", action="store_true", help="a small part in ten minutes at most; only prints")
+    every.add_argument("--only", action="append", default=[], metavar="SECTION", help="part of a section's name; again")
+    about = "a folder or file for a word in capitals of the commands, such as CARTOONS; again"
+    every.add_argument("--data", action="append", default=[], type=_named, metavar="NAME=PATH", help=about)
+    every.add_argument("--assemble", action="store_true", help="run nothing: texts and records as they are")
+    about = "folder of the benchmarks (default: that of this checkout)"
+    every.add_argument("--benchmarks", type=Path, default=_BENCHMARKS, metavar="FOLDER", help=about)
+    every.set_defaults(run=_all)
     pairs = benches.add_parser("pairs", help="blind sheets of two faces, with a hidden key and an answer form")
     about = "pictures with landmarks beside them; or renders, if a second folder is given"
     pairs.add_argument("folder", type=Path, metavar="FOLDER", help=about)
@@ -91,6 +103,28 @@ def _caricature(options: argparse.Namespace) -> None:
 
     _check_output(options, "caricature")
     save_table(caricature_table(options.folder), "caricature", options.output)
+
+
+def _named(text: str) -> tuple[str, str]:
+    name, equals, path = text.partition("=")
+    if not (equals and name.isupper()):
+        raise argparse.ArgumentTypeError(f"expected NAME=PATH, got {text}")
+    return name, path
+
+
+def _all(options: argparse.Namespace) -> None:
+    from toongeo.app.bench.results.bench_all import assemble, bench_all, bench_quick
+
+    if not (options.benchmarks / "quick.txt").is_file():
+        raise FileNotFoundError(f"benchmarks: expected the folder of a checkout, got {options.benchmarks}")
+    if options.quick:
+        bench_quick(options.benchmarks, _QUICK_SECONDS)
+        return
+    troubles = [] if options.assemble else bench_all(options.benchmarks, options.only, dict(options.data))
+    if options.assemble:
+        assemble(options.benchmarks)
+    print("\n".join(f"not run: {trouble}" for trouble in troubles))
+    print(f"wrote {options.benchmarks / 'RESULTS.md'}")
 
 
 def _pairs(options: argparse.Namespace) -> None:

@@ -36,7 +36,7 @@ def reader_of_film(frames: Iterable[Bytes], sequence: Floats, neutral: int | Non
     ValueError
         If no frame has enough landmarks, or the skin is not seen.
     """
-    landmarks, at = neutral_landmarks(sequence) if neutral is None else (_whole(sequence, neutral), neutral)
+    landmarks, at = neutral_landmarks(sequence) if neutral is None else (sequence[neutral], neutral)
     face = PerformerFace.of_neutral(landmarks)
     reader = SkinReader(face, _frame(frames, at), landmarks)
     chosen = set(np.linspace(0, len(sequence) - 1, _LOOKED_AT).round().astype(int)) | {at}
@@ -56,13 +56,6 @@ def reader_of_film(frames: Iterable[Bytes], sequence: Floats, neutral: int | Non
 def is_seen(points: Floats) -> bool:
     """Whether a frame has landmarks (68, 2) enough."""
     return int(np.isfinite(points).all(axis=1).sum()) >= FEWEST
-
-
-def _whole(sequence: Floats, neutral: int) -> Floats:
-    """The landmarks (68, 2) of a frame that is said to be neutral."""
-    if not np.isfinite(sequence[neutral]).all():
-        raise ValueError(f"neutral: expected a frame in which the whole face is seen, got frame {neutral}")
-    return sequence[neutral]
 
 
 def _agreed(rig: LandmarkRig, poses: dict[int, LandmarkPose], found: dict[int, Floats], at: int) -> Floats:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from toongeo.metrics import landmark_error
 from toongeo.metrics.outer_eye_distance import outer_eye_distance
 from toongeo.model import MorphableModel
 from toongeo.model.ibug68 import INNER
-from toongeo.pipeline.align.align_face import align_face
-from toongeo.pipeline.fit import fit_3dmm
+from toongeo.pipeline.align.align_face import AlignedFace, align_face
+from toongeo.pipeline.fit import FaceFit, fit_3dmm
 
 __all__ = ["held_out_errors"]
 
@@ -17,7 +19,11 @@ _FOLDS = 4  # each leaves out every fourth inner point, whose neighbours on both
 
 
 def held_out_errors(
-    img: np.ndarray | None, landmarks: np.ndarray, *, model: MorphableModel | None = None
+    img: np.ndarray | None,
+    landmarks: np.ndarray,
+    *,
+    model: MorphableModel | None = None,
+    align: Callable[[FaceFit, np.ndarray], AlignedFace] | None = None,
 ) -> dict[str, float]:
     """Landmark error of points that a face was not fitted and aligned to, by leave-some-out cross-validation.
 
@@ -31,6 +37,9 @@ def held_out_errors(
     landmarks : (68, 2) float, px
         NaN rows are missing.
     model : MorphableModel, optional
+    align : (fit, landmarks) -> AlignedFace, optional
+        Another way to align, such as that of caricatures; :func:`toongeo.align_face` without an estimate of noise
+        unless given.
 
     Returns
     -------
@@ -56,7 +65,8 @@ def held_out_errors(
         left = INNER[k::_FOLDS]
         some = np.array(landmarks, np.float64)
         some[left] = np.nan
-        face = align_face(fit_3dmm(img, some, model=model), some, noise=0)
+        fit = fit_3dmm(img, some, model=model)
+        face = align_face(fit, some, noise=0) if align is None else align(fit, some)
         found[left] = face.project(face.vertices[face.landmark_vertices[left]])
     errors = landmark_error(found, landmarks, scale=outer_eye_distance(landmarks, found))
     return {part: error for part, error in errors.items() if part not in ("jaw", "total")}

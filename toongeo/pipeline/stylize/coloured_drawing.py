@@ -1,5 +1,7 @@
 """Drawings in colour: toon, chibi, caricature, painted."""
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 
@@ -14,10 +16,10 @@ from toongeo.pipeline.stylize.strokes.eyes import draw_eyes
 from toongeo.pipeline.stylize.strokes.mouth import draw_mouth
 from toongeo.pipeline.stylize.strokes.outline import draw_brows, draw_jaw, draw_nose, skin_outline
 from toongeo.pipeline.stylize.strokes.pens import Pens, pens_of
-from toongeo.pipeline.stylize.strokes.spectacles import long_lines
+from toongeo.pipeline.stylize.strokes.spectacles import draw_rims, long_lines
 from toongeo.pipeline.stylize.style import Style
 
-__all__ = ["coloured_drawing", "surroundings", "visible_skin"]
+__all__ = ["Backdrop", "coloured_drawing", "surroundings", "visible_skin"]
 
 _SKIN_WEIGHT = 0.8  # by which skin counts less for the palette of all else
 _HAIR_COLOURS, _HAIRY = 0.4, 0.2  # of the palette's colours; where there is so much hair, in areas of skin
@@ -33,26 +35,51 @@ _CHEEKS = ((36, 48, 48, 31), (45, 54, 54, 35))
 _BLUSH_RADIUS, _BLUSH = 0.11, (-4.0, 22.0, 5.0)
 
 
-def coloured_drawing(subject: Subject, style: Style, backdrop: Singles) -> Singles:
-    """RGB (h, w, 3) in 0..255; ``backdrop`` is what :func:`surroundings` gives for the style, CIELAB."""
+@dataclass(frozen=True, eq=False)
+class Backdrop:
+    """All but the skin, which the drawing and its variant for textures share.
+
+    Attributes
+    ----------
+    lab, rgb : (h, w, 3) float32
+        The same in CIELAB, and in 0..255.
+    lines : (h, w) float32
+        Cover of lines along edges.
+    long_dark, long_light : (h, w) float32 or None
+        Covers of long lines on the face, where there are any.
+    """
+
+    lab: Singles
+    rgb: Singles
+    lines: Singles
+    long_dark: Singles | None
+    long_light: Singles | None
+
+
+def coloured_drawing(subject: Subject, style: Style, backdrop: Backdrop) -> Singles:
+    """RGB (h, w, 3) in 0..255; ``backdrop`` is what :func:`surroundings` gives for the style."""
     box, skin = subject.skin_box, subject.skin_cover
-    lab = backdrop[box].copy()
+    lab = backdrop.lab[box].copy()
     cover = soft_step(skin[box] - 0.5, _SOFT_CUT) if style.palette else skin[box]
     lab += cover[..., None] * (toned_skin(subject, style) - lab)
     if style.blush > 0 and not subject.grey:
         _add_blush(lab, subject, cover, style.blush)
-    rgb = rgb_of(backdrop)
+    rgb = backdrop.rgb.copy()
     rgb[box] = rgb_of(lab)
     pens = pens_of(subject, style)
     canvas = Canvas(rgb)
     if style.outlines > 0:
-        _draw_outlines(canvas, subject, style, pens)
+        _draw_outlines(canvas, subject, backdrop.lines, style, pens)
     draw_mouth(canvas, subject, style, pens)
     draw_nose(canvas, subject, style, pens)
     draw_jaw(canvas, subject, pens, visible_skin(subject))
     draw_brows(canvas, subject, style, pens)
     draw_eyes(canvas, subject, style, pens)
-    _draw_long_lines(canvas, subject, pens)
+    if backdrop.long_dark is not None:
+        canvas.cover(backdrop.long_dark, pens.line, 0.85)
+    if backdrop.long_light is not None:
+        canvas.cover(backdrop.long_light, rgb_of(subject.lab), 0.85)
+    draw_rims(canvas, subject, pens)
     if style.brush > 0:
         canvas.rgb *= brush_marks(subject, style.brush)
     return canvas.rgb
@@ -65,8 +92,8 @@ def visible_skin(subject: Subject) -> Singles:
     return np.clip(6 * subject.full(near) - 0.5, 0, 1)
 
 
-def surroundings(subject: Subject, style: Style) -> Singles:
-    """All but the skin, CIELAB: few colours, and lightness in levels (Winnemoeller et al. 2006)."""
+def surroundings(subject: Subject, style: Style) -> Backdrop:
+    """All but the skin: few colours, lightness in levels (Winnemoeller et al. 2006), and lines."""
     if style.palette == 0:
         lab = subject.lab.copy()
         lab[..., 0] = _levelled(subject.lab[..., 0], style.levels, _SOFT_LEVEL_SLOPE)
@@ -75,7 +102,12 @@ def surroundings(subject: Subject, style: Style) -> Singles:
         levels = _levelled(subject.lab[..., 0], style.levels, _LEVEL_SLOPE)
         lab[..., 0] += np.float32(_OWN_LIGHTNESS) * (levels - lab[..., 0])
     lab[..., 1:] *= np.float32(style.chroma)
-    return lab
+    on_face = subject.hull * (subject.skin_cover > 0.3) * (1 - subject.unexplained)
+    lines = antialiased(subject.response - _LEAST_LINE, _LINE_EDGE) * (1 - _ON_FACE * on_face)
+    on_it = (
+        (None, None) if subject.rims else (_long_lines(subject, subject.lines), _long_lines(subject, -subject.lines))
+    )
+    return Backdrop(lab, rgb_of(lab), np.asarray(lines, np.float32), *on_it)
 
 
 def _in_few_colours(subject: Subject, count: int) -> Singles:
@@ -117,18 +149,15 @@ def _add_blush(lab: Singles, subject: Subject, cover: Singles, strength: float) 
             part += np.float32(strength) * blob[..., None] * np.array(_BLUSH, np.float32)
 
 
-def _draw_outlines(canvas: Canvas, subject: Subject, style: Style, pens: Pens) -> None:
+def _draw_outlines(canvas: Canvas, subject: Subject, lines: Singles, style: Style, pens: Pens) -> None:
     """Lines outside the face where the picture has them, and the outline of the skin."""
-    skin, hull = subject.skin_cover, subject.hull
-    lines = antialiased(subject.response - _LEAST_LINE, _LINE_EDGE) * (1 - _ON_FACE * hull * (skin > 0.3))
     canvas.cover(lines, pens.line, 0.85 * style.outlines)
     canvas.cover(skin_outline(subject, 0.30 * pens.width), pens.line, 0.8)
 
 
-def _draw_long_lines(canvas: Canvas, subject: Subject, pens: Pens) -> None:
-    """Rims of glasses and the like: dark ones by the pen, light ones in their own colour."""
-    for response, paint in ((subject.lines, pens.line), (-subject.lines, rgb_of(subject.lab))):
-        response = long_lines(response, subject, _LEAST_LONG_LINE)
-        if response.any():
-            cover = antialiased(enlarged(response, subject.shape) - _LEAST_LONG_LINE, _LINE_EDGE)
-            canvas.cover(cover, paint, 0.85)
+def _long_lines(subject: Subject, response: Singles) -> Singles | None:
+    """Cover (h, w) of straps, scars and the like, by a line response of the reduced picture."""
+    response = long_lines(response, subject, _LEAST_LONG_LINE)
+    if not response.any():
+        return None
+    return antialiased(enlarged(response, subject.shape) - _LEAST_LONG_LINE, _LINE_EDGE)

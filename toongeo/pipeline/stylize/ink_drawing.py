@@ -12,6 +12,7 @@ from toongeo.pipeline.stylize.strokes.eyes import draw_eyes
 from toongeo.pipeline.stylize.strokes.mouth import draw_mouth
 from toongeo.pipeline.stylize.strokes.outline import draw_brows, draw_jaw, draw_nose, skin_outline
 from toongeo.pipeline.stylize.strokes.pens import pens_of
+from toongeo.pipeline.stylize.strokes.spectacles import draw_rims
 from toongeo.pipeline.stylize.style import Style
 
 __all__ = ["ink_drawing"]
@@ -33,7 +34,8 @@ def ink_drawing(subject: Subject, style: Style) -> Singles:
     darkest = np.float32(min(_MASS * float(subject.skin.median[0]), _DARKEST_MASS))
     mass = antialiased(darkest - lightness, 0.25) * (1 - hull * soft_step(skin - 0.4, 0.1))
     white = 0.9 * antialiased(-response - _LEAST_WHITE, 0.12) * mass
-    lines = antialiased(response - _LEAST_LINE, 0.12) * (1 - 0.9 * hull * (skin > 0.3))
+    on_face = hull * (skin > 0.3) * (1 - subject.unexplained)
+    lines = antialiased(response - _LEAST_LINE, 0.12) * (1 - 0.9 * on_face)
     border = skin_outline(subject, 0.42 * pens.width)
     black = np.maximum(np.maximum(mass - white, lines), np.maximum(border, _hatching(subject, lightness, skin)))
     canvas = Canvas(np.full((*lightness.shape, 3), _PAPER, np.float32))
@@ -43,6 +45,7 @@ def ink_drawing(subject: Subject, style: Style) -> Singles:
     draw_jaw(canvas, subject, pens, visible_skin(subject))
     draw_brows(canvas, subject, style, pens)
     draw_eyes(canvas, subject, style, pens)
+    draw_rims(canvas, subject, pens)
     return canvas.rgb
 
 

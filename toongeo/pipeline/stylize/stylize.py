@@ -18,7 +18,7 @@ from toongeo.pipeline.parse.find_hair import seen_hair
 from toongeo.pipeline.stylize.appearance.head_light import HeadLight, head_light
 from toongeo.pipeline.stylize.appearance.pixels import placed_in, sampled
 from toongeo.pipeline.stylize.appearance.subject import Subject, subject_of, working_factor
-from toongeo.pipeline.stylize.coloured_drawing import coloured_drawing, surroundings
+from toongeo.pipeline.stylize.coloured_drawing import Backdrop, coloured_drawing, surroundings
 from toongeo.pipeline.stylize.exaggerated import exaggerated
 from toongeo.pipeline.stylize.face_frame import face_frame
 from toongeo.pipeline.stylize.ink_drawing import ink_drawing
@@ -26,7 +26,8 @@ from toongeo.pipeline.stylize.style import STYLES, Style
 from toongeo.pipeline.stylize.style_rules import style_rules
 from toongeo.pipeline.stylize.velocity_warp import VelocityWarp, velocity_warp
 from toongeo.pipeline.texture import find_irises
-from toongeo.protocols import Stylized
+from toongeo.pipeline.texture.find_rims import find_rims
+from toongeo.protocols import HairMask, Stylized
 
 __all__ = ["check_strength", "check_style", "reduced_fit", "stylize", "subject_for"]
 
@@ -35,7 +36,9 @@ _STRONGEST = 2.0
 # Passes and colour tolerance (Lab) of the abstraction: paintings keep more.
 _PASSES, _TOLERANCE = 3, 9.0
 _PAINTED_PASSES, _PAINTED_TOLERANCE = 2, 7.0
-_HAIR_VIEW = 125.0  # px of the head in which hair is looked for: it guides the cut of the skin, and colours
+# px of the head in which hair is looked for: it guides the cut of the skin, and colours. At 125 the white hair of
+# einstein is not found.
+_HAIR_VIEW = 150.0
 _DOUBTFUL = 0.75  # how much a mask of hair that is not trusted says
 
 
@@ -107,14 +110,15 @@ def stylize(
         return Stylized(img, points, warp, img)
     factor = min(1.0, (_LARGEST / (img.shape[0] * img.shape[1])) ** 0.5)
     photo, placed = _reduced(img, factor), placed_in(points, factor)
-    bent = warp.scaled(factor)
-    subject = subject_for(photo, placed, reduced_fit(fit, factor), bent, look)
+    bent, there = warp.scaled(factor), reduced_fit(fit, factor)
+    hair = seen_hair(photo, placed, there, _HAIR_VIEW)
+    subject = subject_for(photo, placed, there, bent, look, hair)
     backdrop = None if look.ink else surroundings(subject, look)
     below = bent.picture(photo) if strength < 1 else None
     drawing, texture = (
         _drawn(subject, variant, backdrop, below, strength, img.shape) for variant in (look, look.for_texture())
     )
-    return Stylized(drawing, warp.points(points), warp, texture)
+    return Stylized(drawing, warp.points(points), warp, texture, resized_hair(hair, (img.shape[0], img.shape[1])))
 
 
 def check_strength(strength: object) -> None:
@@ -142,16 +146,17 @@ def check_style(style: object) -> Style:
     return STYLES[style]
 
 
-def subject_for(photo: Bytes, points: Floats, fit: FaceFit, warp: VelocityWarp, look: Style) -> Subject:
+def subject_for(photo: Bytes, points: Floats, fit: FaceFit, warp: VelocityWarp, look: Style, hair: HairMask) -> Subject:
     """What is measured on a photograph (H, W, 3) whose face has landmarks (68, 2) px and a fit, after the warp."""
     shape = (photo.shape[0], photo.shape[1])
     moved, irises = warp.points(points), find_irises(photo, points)
+    rims = find_rims(photo, points)
     size, before = face_frame(moved).size, face_frame(points).size
     factor = working_factor(shape, size)
     small = _reduced(photo, min(factor, 1.0))
     light = head_light(photo, fit, points, before)
     places = warp.scaled(factor).sources((round(factor * shape[0]), round(factor * shape[1])))
-    seen, hair = cielab(small), _hair(photo, points, fit)
+    seen = cielab(small)
 
     def taken(plane: Singles) -> Singles:
         there = placed_in(np.asarray(places, np.float64), plane.shape[1] / (factor * shape[1]))
@@ -164,9 +169,10 @@ def subject_for(photo: Bytes, points: Floats, fit: FaceFit, warp: VelocityWarp, 
         taken(seen),
         moved,
         size,
-        HeadLight(*(taken(plane) for plane in (light.head, light.face, light.shade)), light.from_right),
-        taken(hair),
+        HeadLight(taken(light.head), taken(light.face), taken(light.shade), light.from_right),
+        taken(_cover(hair)),
         (right, left),
+        None if rims is None else replace(rims, lines=tuple(warp.points(line) for line in rims.lines)),
         passes=_PAINTED_PASSES if painted else _PASSES,
         tolerance=_PAINTED_TOLERANCE if painted else _TOLERANCE,
     )
@@ -183,9 +189,21 @@ def _reduced(img: Bytes, factor: float) -> Bytes:
     return np.asarray(cv2.resize(img, None, fx=factor, fy=factor, interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def _hair(photo: Bytes, points: Floats, fit: FaceFit) -> Singles:
+def resized_hair(hair: HairMask, shape: tuple[int, int]) -> HairMask:
+    """Hair of a picture that was resized to a shape (h, w)."""
+    if hair.mask.shape == shape:
+        return hair
+
+    def large(plane: np.ndarray) -> Singles:
+        return np.asarray(cv2.resize(plane.astype(np.float32), shape[::-1], interpolation=cv2.INTER_LINEAR))
+
+    mask = large(hair.mask) > 0.5
+    alpha = None if hair.alpha is None else np.clip(large(hair.alpha), 0, 1)
+    return replace(hair, mask=mask, alpha=alpha, hat=None if hair.hat is None else (large(hair.hat) > 0.5) & ~mask)
+
+
+def _cover(found: HairMask) -> Singles:
     """How surely each pixel (h, w) is hair or a hat."""
-    found = seen_hair(photo, points, fit, _HAIR_VIEW)
     alpha = found.mask.astype(np.float32) if found.alpha is None else found.alpha
     hat = np.zeros_like(alpha) if found.hat is None else found.hat
     return np.maximum(alpha * np.float32(1.0 if found.trusted else _DOUBTFUL), hat)
@@ -194,7 +212,7 @@ def _hair(photo: Bytes, points: Floats, fit: FaceFit) -> Singles:
 def _drawn(
     subject: Subject,
     look: Style,
-    backdrop: Singles | None,
+    backdrop: Backdrop | None,
     below: np.ndarray | None,
     strength: float,
     shape: tuple[int, ...],

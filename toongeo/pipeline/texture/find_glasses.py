@@ -13,12 +13,11 @@ from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only, restored
 from toongeo.arrays import Mask
 from toongeo.model.ibug68 import PARTS
-from toongeo.pipeline.texture.glasses.smooth_path import smooth_path
+from toongeo.pipeline.texture.glasses.rims import bridge, rim_below, sampled_at, thin_lines
 from toongeo.pipeline.texture.glasses.upright_eyes import EyeView, upright_eyes
 
 __all__ = ["Glasses", "find_glasses"]
 
-_LINE = 17  # px of the view: rims are thinner
 # CIELAB lightness by which a rim is darker than what it lies on, over most of its way below an eye, and on the nose.
 # Without glasses the 25 pictures have at most 10 and 6 together.
 _RIM, _BRIDGE = 12.0, 6.0
@@ -26,10 +25,6 @@ _RIM, _BRIDGE = 12.0, 6.0
 _TINT, _TINTED_BRIDGE = 25.0, 8.0
 _DARK = 0.55  # of the cheek's lightness: all that is about an eye is darker behind dark glasses
 _LIT = 35.0  # lightness: of a face that lies in the dark, eyes are not told from glasses
-_BELOW = np.radians(np.linspace(15, 165, 61))  # where a rim is looked for, from the eye's middle, downwards
-_RADII = np.linspace(0.5, 1.15, 53)  # eye widths
-_OFF_LID = 0.18  # eye widths from the lower lid: nearer lie lashes and bags
-_MOST = 30  # percent of a rim's way that may be fainter than told
 _BROWS = np.r_[PARTS["brow_right"], PARTS["brow_left"]]
 _GROWN = 0.04  # eye widths by which what was found is grown: rims have soft edges
 
@@ -76,51 +71,19 @@ def find_glasses(img: np.ndarray, landmarks: np.ndarray) -> Glasses | None:
     if not np.isfinite(landmarks[36:48]).all():
         return None
     view = upright_eyes(img, landmarks)
-    lines = _lines(view, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (_LINE, _LINE)))
-    found = [_rim(view, lines, eye) for eye in view.eyes]
-    bridge, strengths = _bridge(view)
+    lines = thin_lines(view)
+    found = [rim_below(lines, eye) for eye in view.eyes]
+    across, strengths = bridge(view)
     crossing = float(np.percentile(strengths, 50))
     if _is_dark(view, float(np.percentile(strengths, 20))):
         return Glasses("dark", _grown(view, view.back(_lenses(view), img.shape), 2 * _GROWN))
     if min(strength for _, strength in found) < _RIM or crossing < _BRIDGE:
         return None
-    frame = _frame(view, lines, [*(path for path, _ in found), bridge])
+    frame = _frame(view, lines, [*(path for path, _ in found), across])
     return Glasses("clear", _grown(view, view.back(frame, img.shape), _GROWN))
 
 
-def _lines(view: EyeView, shape: np.ndarray) -> np.ndarray:
-    """How much darker each pixel is than what is on both sides of a thin line through it."""
-    light = cv2.GaussianBlur(view.lab[..., 0], (0, 0), 1.0)
-    return np.asarray(cv2.morphologyEx(light, cv2.MORPH_CLOSE, shape) - light, np.float32)
-
-
-def _rim(view: EyeView, lines: np.ndarray, eye: np.ndarray) -> tuple[np.ndarray, float]:
-    """The likeliest rim (61, 2) below an eye (6, 2), and how dark most of it is."""
-    middle, width = eye.mean(0), float(np.linalg.norm(eye[3] - eye[0]))
-    down = np.sin(_BELOW)[:, None] * (_RADII * width)
-    places = np.dstack([middle[0] + np.cos(_BELOW)[:, None] * (_RADII * width), middle[1] + down])
-    dark = _sampled(lines, places)
-    lid = eye[[4, 5], 1].mean() - middle[1]
-    dark[(down < lid + _OFF_LID * width) & (np.sin(_BELOW)[:, None] > 0.35)] = 0
-    way = smooth_path(dark)
-    rows = np.arange(len(way))
-    return places[rows, way], float(np.percentile(dark[rows, way], _MOST))
-
-
-def _bridge(view: EyeView) -> tuple[np.ndarray, np.ndarray]:
-    """The likeliest line (41, 2) across the nose between the eyes, and how dark it is along its way (41,)."""
-    lines = _lines(view, np.ones((_LINE, 1), np.uint8))
-    left, right = view.points[39], view.points[42]
-    width, span = np.linalg.norm(left - view.points[36]), right[0] - left[0]
-    x = np.linspace(left[0] + 0.12 * span, right[0] - 0.12 * span, 41)
-    y = (left[1] + right[1]) / 2 + np.linspace(-0.55, 0.45, 41) * width
-    places = np.dstack(np.meshgrid(x, y, indexing="ij"))
-    dark = _sampled(lines, places)
-    way = smooth_path(dark)
-    return places[np.arange(41), way], dark[np.arange(41), way]
-
-
-def _is_dark(view: EyeView, bridge: float) -> bool:
+def _is_dark(view: EyeView, crossing: float) -> bool:
     """Whether what is about both eyes is another skin than the cheeks', or nearly black."""
     tinted, dark = [], []
     for eye in view.eyes:
@@ -134,7 +97,7 @@ def _is_dark(view: EyeView, bridge: float) -> bool:
         about = view.lab[..., 0][view.inside(eye, 1.6)]
         lightest = np.percentile(about, 90) if len(about) else np.inf
         dark.append(cheek[0] >= _LIT and lightest < _DARK * cheek[0])
-    return all(dark) or (all(tinted) and bridge >= _TINTED_BRIDGE)
+    return all(dark) or (all(tinted) and crossing >= _TINTED_BRIDGE)
 
 
 def _lenses(view: EyeView) -> np.ndarray:
@@ -158,12 +121,12 @@ def _lenses(view: EyeView) -> np.ndarray:
         outline, _ = cv2.findContours(own.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
         hull = cv2.convexHull(np.vstack(outline))
         cover |= cv2.fillConvexPoly(np.zeros(cover.shape, np.uint8), hull, 1).astype(bool)
-    return cover | (_frame(view, _lines(view, np.ones((_LINE, 1), np.uint8)), [_bridge(view)[0]]))
+    return cover | (_frame(view, thin_lines(view, upright=True), [bridge(view)[0]]))
 
 
 def _frame(view: EyeView, lines: np.ndarray, paths: list[np.ndarray]) -> np.ndarray:
     """Mask of the view of dark lines that hang together with paths, but not of lids and brows."""
-    strength = np.median([np.median(_sampled(lines, path[None])) for path in paths])
+    strength = np.median([np.median(sampled_at(lines, path[None])) for path in paths])
     line = lines > max(0.4 * float(strength), 4.0)
     spared = np.zeros(line.shape, np.uint8)
     for brow in ("brow_left", "brow_right"):
@@ -184,8 +147,3 @@ def _grown(view: EyeView, mask: np.ndarray, share: float) -> np.ndarray:
     width = 1 + 2 * max(1, round(share * view.eye_width))
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
     return np.asarray(cv2.dilate(mask.astype(np.uint8), disc)).astype(bool)
-
-
-def _sampled(image: np.ndarray, places: np.ndarray) -> np.ndarray:
-    x, y = (np.ascontiguousarray(places[..., k], np.float32) for k in (0, 1))
-    return np.asarray(cv2.remap(image, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE))

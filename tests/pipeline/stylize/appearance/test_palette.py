@@ -35,5 +35,15 @@ def test_what_has_no_weight_has_no_colour():
 
 def test_each_pixel_takes_the_nearest_colour():
     lab = picture(3) + np.float32(1)
-    distances = np.stack([np.square(lab - colour).sum(-1) for colour in COLOURS])
-    np.testing.assert_allclose(in_palette(distances, COLOURS), lab - 1, atol=0.01)
+    fields = np.dstack([lab, np.zeros(lab.shape[:2], np.float32)])
+    np.testing.assert_allclose(in_palette(fields, COLOURS, np.zeros(3, np.float32)), lab - 1, atol=0.01)
+
+
+def test_colours_of_hair_and_others_keep_to_their_places():
+    hair = np.zeros((40, 50), np.float32)
+    hair[:20] = 1
+    fields = np.dstack([picture(5), hair]).astype(np.float32)
+    owners = np.array([-1e5, 1e5, 1e5], np.float32)  # the first colour is the hair's, the others are not
+    found = in_palette(fields, COLOURS, owners)
+    np.testing.assert_allclose(found[:20], np.broadcast_to(COLOURS[0], (20, 50, 3)), atol=0.01)
+    assert np.abs(found[20:] - COLOURS[0]).max(axis=-1).min() > 30

@@ -12,6 +12,10 @@ export async function loadAvatar(bytes) {
   gltf.scene.traverse((object) => object.isMesh && meshes.push(object));
   const moving = meshes.filter((mesh) => mesh.morphTargetDictionary);
   const names = [...new Set(moving.flatMap((mesh) => Object.keys(mesh.morphTargetDictionary)))];
+  // Targets fill some 20 MB of the graphics card, and shaders that know them take longer to build: the first frame, which
+  // shows the face at rest, does without.
+  const targets = new Map(moving.map(({ geometry }) => [geometry, geometry.morphAttributes]));
+  for (const geometry of targets.keys()) geometry.morphAttributes = {};
   const own = new Map(meshes.map((mesh) => [mesh, mesh.material]));
   const wanted = Object.fromEntries(names.map((name) => [name, 0]));
   let added = {}; // what idle life puts upon the weights that are wanted
@@ -53,9 +57,12 @@ export async function loadAvatar(bytes) {
     return { ...wanted };
   }
 
-  // Expressions are shaded as they should be only after this, which takes a while; the page stays awake.
+  // Expressions show only after this, which takes a while; the page stays awake.
   async function finish() {
-    for (const mesh of moving) await bendNormals(mesh.geometry);
+    for (const [geometry, attributes] of targets) {
+      geometry.morphAttributes = attributes;
+      await bendNormals(geometry);
+    }
   }
 
   const hair = meshes.find((mesh) => mesh.name === 'hair');

@@ -110,8 +110,9 @@ def _bilateral_across(picture: Singles, flow: Singles, sigma: float, tolerance: 
     total, weight = np.zeros_like(picture), np.ones(picture.shape[:2], np.float32)
     for k in (*range(-_SAMPLES_ACROSS, 0), *range(1, _SAMPLES_ACROSS + 1)):
         distance = _REACH_ACROSS * k / _SAMPLES_ACROSS
-        at = cv2.scaleAdd(normal, distance * sigma, start)
-        difference = cv2.subtract(sampled(picture, at, cv2.INTER_LINEAR, cv2.BORDER_REFLECT_101), picture)
+        at = np.asarray(cv2.scaleAdd(normal, distance * sigma, start), np.float32)
+        other = sampled(picture, at, cv2.INTER_LINEAR, cv2.BORDER_REFLECT_101)
+        difference = np.asarray(cv2.subtract(other, picture), np.float32)
         unlike = _dot(difference, difference)
         unlike *= np.float32(-0.5 / tolerance**2)
         unlike += np.float32(-0.5 * distance**2)
@@ -120,17 +121,17 @@ def _bilateral_across(picture: Singles, flow: Singles, sigma: float, tolerance: 
         weight += share
     total *= cv2.merge([1 / weight] * 3)
     total += picture
-    return total
+    return np.asarray(total, np.float32)
 
 
 def _dot(a: Singles, b: Singles) -> Singles:
     """Inner products (h, w) over the last of three axes; products of planes."""
-    product = np.asarray(cv2.multiply(a, b))
+    product = np.asarray(cv2.multiply(a, b), np.float32)
     if product.ndim == 2:
         return product
-    return np.asarray(cv2.transform(product, np.ones((1, product.shape[2]), np.float32)))
+    return np.asarray(cv2.transform(product, np.ones((1, product.shape[2]), np.float32)), np.float32)
 
 
 def _grid(shape: tuple[int, ...]) -> Singles:
     rows, columns = np.mgrid[: shape[0], : shape[1]].astype(np.float32)
-    return np.asarray(cv2.merge([columns, rows]))
+    return np.asarray(cv2.merge([columns, rows]), np.float32)

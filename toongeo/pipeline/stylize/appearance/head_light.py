@@ -8,11 +8,10 @@ from toongeo.arrays import Bytes, Floats, Mask, Singles
 from toongeo.colour.srgb import srgb_to_linear
 from toongeo.geometry import vertex_normals
 from toongeo.pipeline.fit import FaceFit
-from toongeo.pipeline.fit.photometric.shading_basis import shading_basis
 from toongeo.pipeline.parse.masks import filled, grown
 from toongeo.pipeline.stylize.appearance.pixels import blurred, hull_of, placed_in, reduced
 from toongeo.protocols import Camera
-from toongeo.render import interpolate, rasterize
+from toongeo.render import interpolate, irradiance, rasterize
 
 __all__ = ["LIGHT_SIZE", "HeadLight", "best_light", "head_light"]
 
@@ -22,7 +21,13 @@ _SOFT = 0.05  # face sizes: no facet shows, and no wrinkle
 _WEAK = 0.25  # log2: light that varies less over the face than this is even
 _X = 3  # row of the harmonic that grows to the right of the camera
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # of linear sRGB
-_FEATURES = ((range(36, 42), 0.05), (range(42, 48), 0.05), (range(48, 60), 0.04), (range(17, 22), 0.04), (range(22, 27), 0.04))
+_FEATURES = (
+    (range(36, 42), 0.05),
+    (range(42, 48), 0.05),
+    (range(48, 60), 0.04),
+    (range(17, 22), 0.04),
+    (range(22, 27), 0.04),
+)
 _ROUNDS = 6  # of robust weights: they no longer change
 _OFF = 0.25  # of the luminance: so far from the model a pixel counts a half. Beards, glasses, highlights are farther
 _RIDGE = 0.003  # on all but the ambient harmonic, which the visible half of a face hardly tells apart; of the trace
@@ -58,7 +63,7 @@ def head_light(photo: Bytes, fit: FaceFit, landmarks: Floats, size: float) -> He
     if not head.any():
         none = np.zeros(small.shape[:2], np.float32)
         return HeadLight(none, none, none, False)
-    basis = shading_basis(_in_view(camera, normals[head]))
+    basis = _shading_basis(_in_view(camera, normals[head]))
     luminance = srgb_to_linear(small[head]) @ _LUMINANCE
     known = _bare(small.shape, placed_in(landmarks, factor))[head]
     harmonics = best_light(basis[known], luminance[known]) if known.sum() > len(basis.T) else np.eye(9)[0]
@@ -95,6 +100,12 @@ def _seen(fit: FaceFit, camera: Camera, shape: tuple[int, int]) -> tuple[Mask, M
     attributes = np.column_stack([vertex_normals(fit.vertices, fit.faces), fit.region("face")])
     drawn = interpolate(fragments, faces, attributes)
     return fragments.mask, drawn[..., 3] > 0.5, drawn[..., :3]
+
+
+def _shading_basis(normals: Floats) -> Floats:
+    """Light (k, 9) on surfaces with normals (k, 3) under each harmonic of unit radiance."""
+    each = np.eye(9)  # as three channels at a time
+    return np.hstack([irradiance(normals, each[:, first : first + 3]) for first in (0, 3, 6)])
 
 
 def _in_view(camera: Camera, normals: Floats) -> Floats:

@@ -1,6 +1,5 @@
 """Few colours for many."""
 
-import cv2
 import numpy as np
 
 from toongeo.arrays import Singles
@@ -12,6 +11,7 @@ _ROUNDS = 12  # of k-means; what moves later is not seen
 _BINS = (26, 64, 64)  # L 0..100, a and b -128..127
 # Of the softmax between colours of the palette, squared Lab: borders between two fields are a pixel or two wide.
 _SHARPNESS = np.float32(12.0)
+_ROWS = 32  # at once: they stay in the cache
 
 
 def palette_of(lab: Singles, weight: Singles, count: int) -> Singles:
@@ -63,9 +63,13 @@ def in_palette(fields: Singles, palette: Singles, hairy: Singles) -> Singles:
     """
     weights = np.column_stack([-2 * palette, hairy]) / -_SHARPNESS
     start = (np.square(palette).sum(axis=1) + np.maximum(-hairy, 0)) / -_SHARPNESS
-    shares = np.asarray(weights, np.float32) @ fields.reshape(-1, 4).T + np.asarray(start, np.float32)[:, None]
-    shares -= shares.max(axis=0)
-    np.exp(shares, out=shares)
-    colours = palette.T.astype(np.float32) @ shares
-    colours /= shares.sum(axis=0)
-    return np.asarray(cv2.merge([channel.reshape(fields.shape[:2]) for channel in colours]))
+    weights, start = np.asarray(weights, np.float32), np.asarray(start, np.float32)[:, None]
+    result = np.empty((*fields.shape[:2], 3), np.float32)
+    for first in range(0, len(fields), _ROWS):
+        part = fields[first : first + _ROWS]
+        shares = weights @ part.reshape(-1, 4).T + start
+        shares -= shares.max(axis=0)
+        np.exp(shares, out=shares)
+        shares /= shares.sum(axis=0)
+        result[first : first + _ROWS] = (shares.T @ palette).reshape(*part.shape[:2], 3)
+    return result

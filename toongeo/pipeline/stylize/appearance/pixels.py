@@ -12,7 +12,7 @@ __all__ = ["antialiased", "blurred", "enlarged", "hull_of", "placed_in", "reduce
 _EDGE = 1.4  # px over which an antialiased edge goes from 0 to 1: the diagonal of a pixel
 
 
-def reduced(picture: Singles, factor: float) -> Singles:
+def reduced(picture: np.ndarray, factor: float) -> np.ndarray:
     """A picture (h, w[, c]) made smaller by area means, or larger by cubic interpolation."""
     kind = cv2.INTER_AREA if factor < 1 else cv2.INTER_CUBIC
     return np.asarray(cv2.resize(picture, None, fx=factor, fy=factor, interpolation=kind))

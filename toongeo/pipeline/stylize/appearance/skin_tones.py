@@ -13,11 +13,12 @@ __all__ = ["skin_tone", "toned_skin"]
 
 _AIM = 74.0  # L*: darker skin is lifted by a part of the distance, lighter skin by the least
 _PART = 0.35
-_MOST = 3.0  # L* above the median of the photograph's skin: dark skin stays dark
+_MOST = 3.0  # L* above the photograph's skin: dark skin stays dark
 _LIGHTEST = 92.0
 _DARK, _BRIGHT = -0.75, 0.85  # of the shading, at which tones change
 _PHOTO_SPREAD = 22.0  # L* from the median that counts as much as one unit of shading
 _SOFT = 0.5  # of the step between tones, where they are soft
+_KEPT = 0.85  # of what is no skin where beards grow
 _FLAT_EDGE = 0.006  # of shading a pixel
 
 
@@ -30,9 +31,9 @@ class _Shading:
 
 def skin_tone(subject: Subject, style: Style) -> Singles:
     """The skin's one colour (3,), CIELAB: its lighter half's, a little lighter and more colourful."""
-    lit, median = subject.skin.lit, subject.skin.median
+    lit = subject.skin.lit
     lift = np.clip(_PART * (_AIM - lit[0]), 0.5 * style.lift, 1.6 * style.lift)
-    lightness = min(lit[0] + lift, median[0] + _MOST, _LIGHTEST)
+    lightness = min(lit[0] + lift, subject.skin.lightness + _MOST, _LIGHTEST)
     return np.array([lightness, *(lit[1:] * style.chroma)], np.float32)
 
 
@@ -47,7 +48,8 @@ def toned_skin(subject: Subject, style: Style) -> Singles:
         flat[..., 0] += 5 * np.clip(shading.mix, -1.5, 1.5)
     own = subject.lab[subject.skin_box] * np.array([1, style.chroma, style.chroma], np.float32)
     own[..., 0] += tone[0] - subject.skin.lit[0]
-    return np.asarray(own + np.float32(style.flatness) * (flat - own))
+    flatness = np.float32(style.flatness) * (1 - np.float32(_KEPT) * subject.unexplained[subject.skin_box])
+    return np.asarray(own + flatness[..., None] * (flat - own))
 
 
 def _shading(subject: Subject, style: Style) -> _Shading:

@@ -20,10 +20,10 @@ def steep_edges(picture: Singles, radius: int) -> Singles:
     ----------
     picture : (h, w, c) float32
     radius : int, px
-        Of the disc in which extremes are looked for.
+        Half the side of the square in which extremes are looked for.
     """
-    disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1,) * 2)
-    low, high = cv2.erode(picture, disc), cv2.dilate(picture, disc)
+    square = cv2.getStructuringElement(cv2.MORPH_RECT, (2 * radius + 1,) * 2)
+    low, high = cv2.erode(picture, square), cv2.dilate(picture, square)
     share = np.clip((picture - low) / np.maximum(high - low, np.float32(1e-3)), 0, 1)
     share = 0.5 + 0.5 * np.tanh(_STEEP * (share - 0.5)) / np.float32(np.tanh(_STEEP / 2))
     return blurred(np.asarray(low + share * (high - low), np.float32), _SOFT)

@@ -7,11 +7,13 @@ import cv2
 import numpy as np
 
 from toongeo.arrays import Floats, Singles
+from toongeo.pipeline.parse.masks import filled, grown
 from toongeo.pipeline.stylize.appearance.edge_flow import abstracted, line_response
 from toongeo.pipeline.stylize.appearance.head_light import HeadLight
-from toongeo.pipeline.stylize.appearance.pixels import enlarged, placed_in
-from toongeo.pipeline.stylize.appearance.skin_region import SkinRegion, skin_region
+from toongeo.pipeline.stylize.appearance.pixels import blurred, enlarged, placed_in, soft_step
+from toongeo.pipeline.stylize.appearance.skin_region import SkinRegion, may_be_beard, skin_region
 from toongeo.pipeline.stylize.appearance.steep_edges import steep_edges
+from toongeo.pipeline.texture.find_rims import Rims
 
 __all__ = ["Subject", "subject_of", "working_factor"]
 
@@ -20,6 +22,9 @@ __all__ = ["Subject", "subject_of", "working_factor"]
 WORKING_SIZE, _MOST_PIXELS = 104.0, 500_000
 _STEEP_RADIUS = 0.012  # face sizes
 _NONE = 1e-3  # of cover
+# How far colours are off those of skin in its light where they are kept (Lab), less between nose and lip, where a smile
+# has no folds, and over how much that begins; the most that light changes lightness for one unit of shade.
+_OFF, _OFF_LIP, _SOFT_OFF, _MOST_SHADE = 15.0, 8.0, 3.0, 15.0
 _GREY = 1.0  # mean absolute a* and b* below which a picture has no colour
 
 
@@ -50,6 +55,8 @@ class Subject:
     light : HeadLight
     grey : bool
         Without colours.
+    rims : Rims or None
+        Of glasses.
     """
 
     shape: tuple[int, int]
@@ -66,6 +73,7 @@ class Subject:
     skin: SkinRegion
     light: HeadLight
     grey: bool
+    rims: Rims | None
 
     def full(self, plane: Singles) -> Singles:
         """A plane in [0, 1] of the reduced picture at full size."""
@@ -87,10 +95,35 @@ class Subject:
         return np.clip(enlarged(self.lines, self.shape), -50, 50)
 
     @cached_property
+    def unexplained(self) -> Singles:
+        """Where a beard may grow, and colours are none that skin has in this light (H, W): beards, moustaches."""
+        around, lip = _beard_zone(self)
+        known = self.skin.hull * self.skin.seen * (1 - around) > 0.5
+        shade, lightness = self.light.shade, self.small[..., 0]
+        slope = 0.0
+        if known.sum() > 1:
+            away = shade[known] - shade[known].mean()
+            slope = float(np.clip(away @ lightness[known] / max(float(away @ away), 1e-6), 0, _MOST_SHADE))
+        expected = self.skin.median[0] + slope * (shade - (np.median(shade[known]) if known.any() else 0))
+        off = np.square(lightness - expected) + np.square(self.small[..., 1:] - self.skin.median[1:]).sum(axis=-1)
+        kept = around * soft_step(np.sqrt(off) - np.float32(_OFF) + np.float32(_OFF - _OFF_LIP) * lip, _SOFT_OFF)
+        return self.full(np.asarray(blurred(kept.astype(np.float32), 0.012 * self.size * self.factor)))
+
+    @cached_property
     def skin_box(self) -> tuple[slice, slice]:
         """Rows and columns of the drawing outside which nothing is painted as skin."""
         x, y, width, height = cv2.boundingRect((self.skin_cover > _NONE).astype(np.uint8))
         return slice(y, y + height), slice(x, x + width)
+
+
+def _beard_zone(subject: Subject) -> tuple[Singles, Singles]:
+    """Soft covers (h, w) of where beards and moustaches grow, and of what of it is between nose and lip."""
+    points, size = placed_in(subject.landmarks, subject.factor), subject.size * subject.factor
+    shape = subject.small.shape
+    nose = grown(filled(shape, points[31:36]), 0.01 * size)
+    beard = may_be_beard(shape, points, size) & ~nose
+    lip = filled(shape, points[[31, 33, 35, 54, 53, 52, 51, 50, 49, 48]]) & ~nose
+    return tuple(blurred(zone.astype(np.float32), 0.015 * size) for zone in (beard, lip))  # type: ignore[return-value]
 
 
 def working_factor(shape: tuple[int, int], size: float) -> float:
@@ -106,6 +139,7 @@ def subject_of(
     light: HeadLight,
     hair: Singles,
     irises: tuple[Floats | None, Floats | None],
+    rims: Rims | None,
     *,
     passes: int,
     tolerance: float,
@@ -117,4 +151,4 @@ def subject_of(
     skin = skin_region(small, placed_in(landmarks, factor), size * factor, light, hair)
     lab = steep_edges(enlarged(small, shape), max(1, round(_STEEP_RADIUS * size)))
     grey = bool(np.abs(small[..., 1:]).mean() < _GREY)
-    return Subject(shape, landmarks, size, irises, factor, seen, small, flow, lines, lab, hair, skin, light, grey)
+    return Subject(shape, landmarks, size, irises, factor, seen, small, flow, lines, lab, hair, skin, light, grey, rims)

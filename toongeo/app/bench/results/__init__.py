@@ -1,0 +1,1 @@
+"""``toongeo bench all``: the file of all results, put together from texts and from what benchmarks printed."""
