@@ -116,4 +116,4 @@ def read_landmark_take(path: Path, fps: float | None = None, *, scheme: str = "a
 def _array(path: Path) -> NDArray[np.float64]:
     check_file(path)
     with path.open("rb") as stream, promise(path, "an array of numbers in NumPy's format"):
-        return np.asarray(npy_array(stream, path.stat().st_size, kinds="biuf"), np.float64)
+        return np.array(npy_array(stream, path.stat().st_size, kinds="biuf"), np.float64)

@@ -10,7 +10,7 @@ from pathlib import Path
 from numpy.typing import NDArray
 
 from toongeo.reading.check_file import MOST_MB, check_file
-from toongeo.reading.npy_array import npy_array
+from toongeo.reading.npy_array import npy_content
 from toongeo.reading.promise import promise
 
 __all__ = ["npz_names", "read_npz"]
@@ -99,11 +99,8 @@ def read_npz(
 
 
 def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray:
-    with archive.open(entry) as stream:
-        try:
-            array = npy_array(stream, entry.file_size, kinds=_KINDS, most_numbers=entry.file_size)
-            if stream.read(1):
-                raise ValueError(f"the shape is {array.shape}, but more bytes follow")
-            return array
-        except ValueError as error:
-            raise ValueError(f"array {entry.filename!r}: {error}") from error
+    content = archive.read(entry)
+    try:
+        return npy_content(content, kinds=_KINDS)
+    except ValueError as error:
+        raise ValueError(f"array {entry.filename!r}: {error}") from error
