@@ -1,4 +1,4 @@
-"""Points that were left out are foretold by the others."""
+"""Points that were left out are predicted by the others."""
 
 from dataclasses import replace
 

@@ -14,7 +14,7 @@ from toongeo.avatar.avatar import Avatar
 __all__ = ["MadeHead"]
 
 _COARSE = "coarse:   the model's face alone"
-_HELD_OUT = "held out: points foretold by the others"
+_HELD_OUT = "held out: points predicted by the others"
 _FORCED = "aligned:  forced, tells nothing of the face"
 _SMOOTHED = "aligned:  what smoothing left of the noise"
 
