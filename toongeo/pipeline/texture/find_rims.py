@@ -14,8 +14,8 @@ from toongeo.pipeline.texture.glasses.upright_eyes import upright_eyes
 __all__ = ["Rims", "find_rims"]
 
 # CIELAB lightness by which a rim differs from what it lies on, over most of its way below an eye, and on the nose; and
-# above the eye. Without glasses 48 renders, portraits and examples have at most 3.5 below, or no bridge; faint rims in the
-# portraits and renders have 8 and 5.9.
+# above the eye. Without glasses 48 renders, portraits and examples have at most 3.5 below, or no bridge; faint rims in
+# the portraits and renders have 8 and 5.9.
 _BELOW, _BRIDGE, _ABOVE = 6.0, 4.5, 4.0
 
 
