@@ -48,7 +48,10 @@ def test_servers_end_with_ctrl_c_as_they_should(avatar, tmp_path):
         assert process.stdout is not None
         assert process.stdout.readline().startswith(b"page:")
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=120)
+        try:
+            _, errors = process.communicate(timeout=120)
+        finally:
+            process.kill()
     assert process.returncode == 0 and errors == b""
 
 
