@@ -31,9 +31,11 @@ from PIL import Image
 __all__ = ["PRIVATE", "caption_of", "code_digest", "executed", "main", "paired", "same_text", "shows"]
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
-# Absolute paths and addresses of objects: neither means anything to a reader.
+# Absolute paths and addresses of objects: neither means anything to a reader. Of a Windows path the drive counts with
+# the backslash (two in JSON and in a repr) and a name; `class C:` before the end of a line is `C:\n` in JSON, and none.
 PRIVATE = re.compile(
-    r"(?<![\w./])/(?:home|root|tmp|usr|opt|var|Users|private|mnt|srv|work|workspace)/|site-packages|\b[A-Z]:\\|0x[0-9a-f]{6,}"
+    r"(?<![\w./])/(?:home|root|tmp|usr|opt|var|Users|private|mnt|srv|work|workspace)/|site-packages"
+    r"|\b[A-Z]:\\{1,2}(?![nrt]\b)\w|0x[0-9a-f]{6,}"
 )
 _NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _CAPTION = re.compile(r"\*?Figure[^:]*: *(.+?)\*?", re.DOTALL)

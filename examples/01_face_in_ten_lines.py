@@ -60,9 +60,10 @@ plt.show()
 # ## What happened, step by step
 #
 # **1. Landmarks.** 68 points with fixed meaning: number 30 is always the tip of the nose. They are all that the
-# geometry knows about the picture at first. A person placed the ones used here; a detector finds its own, with
-# a confidence for each. How far do the two differ? Distances in pixels depend on the size of the picture, so faces are
-# measured in a unit of their own, the distance of the outer eye corners (points 36 and 45):
+# geometry knows about the picture at first. A person placed the ones used here; a detector finds its own, with a
+# confidence for each. How far do the two differ? Distances in pixels depend on the size of the picture, so faces are
+# measured in a unit of their own, the distance of the outer eye corners (points 36 and 45). With the detected points
+# $p_k$ and the placed ones $q_k$:
 #
 # $$ e_k = \frac{\lVert p_k - q_k \rVert}{\lVert q_{36} - q_{45} \rVert} $$
 
@@ -123,7 +124,7 @@ def clay(vertices: np.ndarray, yaw: float = 0.0) -> np.ndarray:
     return render_mesh(Surface(vertices, avatar.faces), camera, 260, shading="clay")
 
 
-shapes = ("the model's mean", avatar.fit.model.mean), ("fitted", fit.vertices), ("aligned", face.vertices)
+shapes = ("what the model starts from", avatar.fit.model.mean), ("fitted", fit.vertices), ("aligned", face.vertices)
 fig, axes = plt.subplots(2, 3, figsize=(7.2, 4.9))
 for column, (title, shape) in enumerate(shapes):
     for row, yaw in enumerate((0, 50)):
@@ -134,8 +135,8 @@ plt.tight_layout()
 plt.show()
 
 # %% [markdown]
-# *Figure: Three clay heads, each from the front and from the side: the average face of the model, the fitted one with
-# the man's broad face, and the aligned one, whose mouth and nose follow the drawing.*
+# *Figure: Three clay heads, each from the front and from the side: the face that the model starts from, the fitted one
+# with the man's broad face, and the aligned one, whose mouth and nose follow the drawing.*
 #
 # **4. Rig.** How would *this* face smile? Nobody drew it. The template's smile is known triangle by triangle; each
 # triangle's change is carried over (lessons 9 and 10). An expression is then an array of displacements, and expressions
@@ -181,8 +182,8 @@ for line in avatar.report.lines()[:5]:
 # %% [markdown]
 # ## Exercises
 #
-# 1. Expressions add up. Render `jawOpen` 0.6 with `eyeBlinkLeft` 1 and `eyeBlinkRight` 1. Is the displacement of both
-#    together the sum of the displacements of each?
+# 1. Expressions add up. Take `jawOpen` 0.6 and both `eyeBlink` 1. Is the displacement of both together the sum of the
+#    displacements of each?
 # 2. A row of NaN means that a landmark is missing. Leave out the jaw (points 0 to 16) and fit with
 #    `tg.fit_3dmm(None, ...)`. Then move all points of the mouth (48 to 67) down by 5 % of the outer-eye distance and
 #    fit again. By how much does the tip of the chin, which no landmark shows any more, follow?

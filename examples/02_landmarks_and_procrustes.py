@@ -156,7 +156,7 @@ with tempfile.TemporaryDirectory() as folder:
 print("in memory", man[0].round(2), "- in the file", first_line)
 
 # %% [markdown]
-# How do you find a wrong point where you do not know the truth? Let the others foretell it. `tg.held_out_errors` leaves
+# How do you find a wrong point where you do not know the truth? Let the others predict it. `tg.held_out_errors` leaves
 # every fourth inner point out in turn, fits a face to the rest, and compares. A slip of a single point shows at once:
 
 # %%
@@ -321,7 +321,7 @@ for name, value in sorted(asymmetries.items(), key=lambda item: item[1]):
 # ## What to keep in mind
 #
 # - Order is meaning; the unit is the outer-eye distance; NaN is "missing"; y runs down.
-# - A detector that says how sure it is can be corrected where it matters. Points that are foretold by the others are
+# - A detector that says how sure it is can be corrected where it matters. Points that are predicted by the others are
 #   probably right.
 # - Procrustes: means, one singular value decomposition, one ratio. You meet (3) again for head poses (lesson 4), for
 #   turning rings of a mesh (lesson 6) and wherever rigid motion must be taken away.

@@ -37,6 +37,8 @@ from toongeo.render import ScaledOrthographicCamera, Surface, render_mesh
 #
 # $$ p_n = \mu_n + \sum_k B_{nk}\, c_k \qquad (\mu_n, B_{nk} \in \mathbb{R}^3, \text{ mm}) \tag{1} $$
 #
+# (Here $\mu$ is the likeliest face, so that $c = 0$ is it. It is not `model.mean`: see lesson 3.)
+#
 # Some coefficients say who it is (*identity*, here 81 of them, counted in standard deviations from the likeliest face),
 # some say the *expression* (46 named ones such as `jawOpen`, from 0 to 1). A landmark is just a certain vertex: number
 # 30 is the vertex on the tip of the nose. So of all 19,057 vertices the fit looks at 51: landmarks 17 to 67. The 17
@@ -167,7 +169,8 @@ plt.show()
 # Why squares? They are smooth, they make large errors count, and if the dots are off by independent Gaussian noise, the
 # least squares are the likeliest answer. (Where that is false, squares do harm: section 6.)
 #
-# The gradient says in which direction the loss grows fastest. By the chain rule,
+# The gradient says in which direction the loss grows fastest. By the chain rule, with $J_n$ (2 × 133) as the part of
+# $J$ that belongs to dot $n$,
 #
 # $$ \frac{\partial L_{\text{lan}}}{\partial x} = \frac2N \sum_n \omega_n\, J_n^T\, r_n . \tag{4} $$
 
@@ -188,7 +191,9 @@ print(f"loss of the start: {value:.5f}, which is an error of {np.sqrt(value):.1%
 
 # %% [markdown]
 # The library has the same term in `toongeo/pipeline/fit/losses/landmark_loss.py`. It turns the head by a rotation
-# vector in place of three angles, since angles fail when a head looks straight up or down. The value must be the same:
+# vector in place of three angles, since angles fail when a head looks straight up or down. That vector counts from
+# `rotation0`, so it is zero here; and a weight is a 2 × 2 matrix, here the identity. The value must be the same, and so
+# must the slopes, but for those of the rotation, which is counted in another way:
 
 # %%
 # A place with nothing special about it: at a minimum, or at zero, many mistakes do not show.
@@ -266,22 +271,23 @@ print(f"wrong: passed {bad.passed}, slopes {bad.slopes.round(2)}")
 #
 # The simplest optimizer walks against the gradient: $x \leftarrow x - \eta\, g$, with the step $\eta$ halved until the
 # loss falls enough. It works, and it is hopeless. The reason is that unknowns differ in strength. Turning the head by
-# one radian moves the dots by an outer-eye distance; one standard deviation of a typical mode by a hundredth of that.
-# The loss is a narrow valley, and the gradient points at its walls, not along it.
+# one radian moves the dots by 0.3 of the outer-eye distance or more; one standard deviation of a typical identity mode
+# by less than a hundredth of that. The loss is a narrow valley, and the gradient points at its walls, not along it.
 #
 # Two remedies.
 #
 # **Scale the unknowns** so that each has the same curvature. The second derivative of a sum of squares is
 # $H \approx \frac2N \sum_n \omega_n J_n^T J_n$. (Differentiate (4) once more; what is left out is multiplied by the
 # residuals, which are small. This is called the *Gauss-Newton* matrix.) So measure unknown $k$ in units of
-# $1 / \sqrt{H_{kk}}$.
+# $1 / \sqrt{H_{kk}}$. (The prior adds its own second derivative; the weights $\omega_n$ are left out, for a scale need
+# not be exact.)
 #
 # **Remember.** Near its minimum a smooth loss is a bowl, and the step to the bottom is $-H^{-1} g$ (Newton). It needs
 # the whole matrix $H$ and a solution with it, in each step. L-BFGS never forms $H$: it keeps the last few steps
 # $\Delta x$ and the changes $\Delta g$ of the gradient that came with them. Each such pair says how the bowl curves in
 # one direction, $H \Delta x \approx \Delta g$, and from a handful of them a good guess of $-H^{-1} g$ is put together
-# with a few dot products. It comes with nlopt, as do bounds: a `jawOpen` below 0 means nothing, so named expressions
-# stay in $[0, 1]$.
+# with a few dot products. nlopt has it, and bounds too: a `jawOpen` below 0 means nothing, so named expressions stay in
+# $[0, 1]$.
 #
 # So that the three walks below have a definite goal, the loss already has the small prior that section 5 explains.
 
@@ -303,7 +309,7 @@ lower[K + 3], upper[K + 3] = start[K + 3] - 2, start[K + 3] + 2
 
 
 def typical_steps(x, prior_weight=4e-6):
-    """1 / sqrt(H_kk): one such step of any unknown changes the loss alike."""
+    """1 / sqrt(H_kk): in these units each unknown has the curvature 1."""
     J = dots(x)[1]
     stiffness = np.r_[np.ones(n_id), np.full(named, 4.0), np.zeros(6)]
     return 1 / np.sqrt(2 / N * (J**2).sum(axis=(0, 1)) + 2 * prior_weight * stiffness)
@@ -386,7 +392,8 @@ plt.show()
 #
 # ## 5 · A prior, or a monster
 #
-# There are 133 unknowns and 102 numbers. Of course everything fits! Let us take the prior away and look at the face.
+# There are 133 unknowns and 102 numbers. Of course everything fits! What comes out without a prior is a monster, as we
+# shall see below.
 #
 # A *prior* says what we believe before we see the picture: identities are spread around the likeliest face with
 # standard deviation 1 in each coefficient, expressions are mostly small. If the dots have Gaussian noise of standard
@@ -406,7 +413,7 @@ plt.show()
 #
 # How do you *know* that a weight is good? Not from the residuals: they only grow with $w_r$. Two honest measures:
 #
-# - **Held-out points.** Leave out every fourth dot, fit the others, and see how well the face foretells those left out.
+# - **Held-out points.** Leave out every fourth dot, fit the others, and see how well the face predicts those left out.
 # - **Truth.** Make faces whose shape is known, project them, add noise, fit, and compare in 3D.
 
 # %%
@@ -433,7 +440,7 @@ def rms(r):
 
 
 def held_out(points, prior_weight):
-    """Error of the dots, each on a face that was fitted to other three quarters of them."""
+    """Error of the dots, each on a face that was fitted to the other three quarters of them."""
     r = np.zeros((N, 2))
     for k in range(4):
         left = np.arange(N) % 4 == k
@@ -447,7 +454,7 @@ people = []
 for _ in range(5):
     person = start.copy()
     person[:80] = rng.standard_normal(80)  # the 81st mode tells drawings from people: see lesson 3
-    chosen = rng.choice(named - 1, 4, replace=False)
+    chosen = rng.choice(named - 1, 4, replace=False)  # any four but the last, tongueOut, which no dot shows
     person[n_id + chosen] = rng.uniform(0.1, 0.5, 4)
     person[n_id + model.expression_index("mouthClose")] = 0
     person[K : K + 3] = rng.normal(0, np.radians([20, 5, 5]))
@@ -501,18 +508,19 @@ plt.show()
 # plausible man with a broad jaw, the third almost the average face.*
 #
 # The two valleys do not lie at the very same place: one drawing is no person, and four quarters of 51 points are few.
-# But both lie near $\sigma^2/N$, and both say the same about far too little: the face on the left, whose coefficients
-# run into the bound of 4, is worse than no fit at all, and it has the smallest error of the three. **The loss of the
-# points that you fitted tells you nothing about the face.**
+# But both lie near $\sigma^2/N$, and both warn of a prior that is far too weak: with 1e-9 the five people come out
+# worse than if nothing had been fitted. The face on the left is of that kind. Half of its coefficients are at their
+# bound, and it has the smallest error of the three. **The loss of the points that you fitted tells you nothing about
+# the face.**
 #
 # ## 6 · One landmark is simply wrong
 #
 # A detector mistakes a hat for a brow; a hand slips. Squares take such a point at its word: an error five times as
 # large counts twenty-five times. The remedy is a *kernel* $\rho$ that stops growing, here that of Geman and McClure:
 #
-# $$ L = \frac1N \sum_n \rho(\lVert r_n \rVert^2), \qquad \rho(u) = \frac{u}{1 + u/\kappa^2} . \tag{6} $$
+# $$ L_{\text{lan}} = \frac1N \sum_n \rho(\lVert r_n \rVert^2), \qquad \rho(u) = \frac{u}{1 + u/\kappa^2} . \tag{6} $$
 #
-# Its gradient is that of (3) with weights
+# The prior of (5) is added as before. The gradient of (6) is that of (3) with weights
 # $\omega_n = \rho'(\lVert r_n \rVert^2) = (1 + \lVert r_n \rVert^2/\kappa^2)^{-2}$. Where the weights are, for the
 # moment, held fixed, it is the old problem. So: fit, look which points lie far off, give them less weight, fit again.
 # This is called *iteratively reweighted least squares*. The width $\kappa$ must follow the errors themselves, and the
@@ -546,8 +554,8 @@ def robust_fit(points, rounds=6, kernel=lambda u: (1 + u) ** -2):
     x = fit(points)
     for _ in range(rounds):
         squares = ((dots(x)[0] - points) ** 2).sum(axis=1)
-        # Of 2D noise of variance 1 a coordinate, the squared length has the median 2 ln 2: so much for sigma. Points
-        # within three sigma are to be believed.
+        # For 2D noise of variance s² in each coordinate the median of the squared length is 2 ln 2 · s²: that gives s.
+        # Kappa is three s, so points within that are believed; but never less than the 1.4 % that section 5 expects.
         kappa_squared = max(9 * np.median(squares) / (2 * np.log(2)), 0.014**2)
         weights = kernel(squares / kappa_squared)
         x = fit(points, weights=weights, x=x)
@@ -580,18 +588,19 @@ plt.show()
 # *Figure: Four clay heads: the true face, a fit of clean dots that resembles it, a fit by squares of dots with six
 # wrong ones, with a twisted forehead, and the robust fit, which resembles the truth again.*
 #
-# A kernel is no magic. Six points of 51 are outvoted by the rest; half of them would not be. And a whole brow that lies
-# higher may be a slip, or a raised brow: on a drawing the library believes it.
+# A kernel is no magic. Six points of 51 are outvoted by the rest; had half of all points been wrong, they would not be.
+# (The sixth, landmark 18, just misses the list: the face reaches for it a little, and it keeps a tenth of its weight.)
+# And a whole brow that lies higher may be a slip, or a raised brow: on a drawing the library believes it.
 #
 # ## 7 · The library
 #
 # `tg.fit_3dmm` is what you have built, with some care around it: all 68 points, those of the jaw sliding on the outline
-# (lesson 4); weights after how well annotators know each point; a robust kernel, also for points that are shifted along
-# with their neighbours; a prior on nodding; a prior that counts more where a caricature misses all its points; a
-# perspective camera, if asked; and a pose that follows the shape by itself, which halves the number of steps.
+# (lesson 4); weights by how well annotators agree on each point; a robust kernel, also for points that are shifted
+# along with their neighbours; a prior on the pitch; a prior that counts more where a caricature misses all its points;
+# a perspective camera, if asked; and a pose that follows the shape by itself, which halves the number of steps.
 
 # %%
-of_library = tg.fit_3dmm(None, landmarks)
+of_library = tg.fit_3dmm(None, landmarks)  # None: no picture is needed, the dots are enough
 report = of_library.report
 difference = float(np.sqrt(((of_library.vertices - shape_of(fitted))[skin] ** 2).sum(axis=1).mean()))
 print(
@@ -649,13 +658,13 @@ print(f"the face moved by {moved_by(plain_fit):.1f} mm with squares, by {moved_b
 #    Why not?
 # 3. *Where to start.* Fit from starts with other poses: yaw 0°, 90°, 180°, each with pitch −60°, 0°, 60° and roll 0°,
 #    180°. From which do you arrive at the same loss? And at the same angles?
-# 4. *No bounds.* Fit without the bounds on expressions. Which are the most negative? What would they mean?
+# 4. *No lower bounds.* Fit without the lower bounds on expressions. Which are the most negative? What would they mean?
 #
 # ## Solutions
 
 # %%
-# 1. Truncation falls like h², rounding grows like 1/h: the two meet where h is about the cube root of 1e-16. The best
-#    error is some ten digits; and one never knows beforehand at which h. The slope test needs no such luck.
+# 1. Truncation falls like h², rounding grows like 1/h: the two meet where h is about the cube root of 1e-16. At best
+#    some ten digits are right; and one never knows beforehand at which h. The slope test needs no such luck.
 e = np.zeros(len(start))
 e[K] = 1
 sizes = 10.0 ** -np.arange(0, 13)
@@ -700,7 +709,8 @@ print(f"{np.sum(losses < 1.02 * best)} of {len(ends)} starts arrive; rotations d
 print(f"but {aliases} of them have other angles")
 
 # %%
-# 4. Negative expressions explain dots, and mean nothing: nobody can close an eye by minus a half.
+# 4. Negative expressions explain dots, and mean nothing: there is no muscle that shrugs a lip by minus a half. Here it
+#    makes the upper lip longer, which is a matter of shape.
 kept = lower.copy()
 lower[n_id:K] = -np.inf
 free = fit(q)

@@ -169,22 +169,27 @@ print(f"bar: {len(bar)} vertices, {len(F_bar)} triangles; L has {L_bar.nnz} numb
 # $$ E(x) = \tfrac12 \int \lVert \nabla x \rVert^2 . \tag{5} $$
 #
 # (A constant costs nothing, a gentle slope little, ripples much. If $x$ is a coordinate of the surface itself, the
-# energy is that of a soap film, and its gradient says where the film pulls: nowhere on a flat piece, whatever its
-# triangles look like, and inwards where the surface is bent. That is what we want of a Laplacian coordinate.)
+# energy is that of a soap film. The film pulls against the gradient of its energy. So the gradient is zero on a flat
+# piece, whatever its triangles look like, and points out of a bump, as $\delta_i$ does in (1). That is what we want of
+# a Laplacian coordinate.)
+#
+# Linear in between means $x = \sum_i x_i \varphi_i$, where the *hat function* $\varphi_i$ of vertex $i$ is 1 there, 0
+# at all other vertices, and linear on each triangle. Put into (5):
+# $E = \tfrac12 \sum_{ij} x_i x_j \int \nabla\varphi_i \cdot \nabla\varphi_j$. So all we need are these integrals.
 #
 # Inside one triangle the slope is constant, so the integral is easy. Take the triangle with corners $i, j, o$. The hat
-# function of corner $i$ is 1 there and 0 at the others: it rises from the opposite edge, over the triangle's height
-# $h_i$, so that its gradient has length $1/h_i$ and stands at right angles on that edge. The angle between the
-# gradients of $i$ and $j$ is $180°$ minus the angle $\theta_o$ at the third corner. With the area $T$, this gives
+# function $\varphi_i$ rises from the opposite edge, over the triangle's height $h_i$, so that its gradient has length
+# $1/h_i$ and is perpendicular to that edge. The angle between the gradients of $i$ and $j$ is $180°$ minus the angle
+# $\theta_o$ at the third corner. With the area $T$, this gives
 #
 # $$ \int \nabla\varphi_i \cdot \nabla\varphi_j =
 #    -T\, \frac{\cos\theta_o}{h_i h_j} = -\tfrac12 \cot\theta_o , $$
 #
-# where the last step uses the lengths $\ell$ of the sides: $h_i = 2T / \ell_{jo}$, $h_j = 2T / \ell_{io}$ and
-# $2T = \ell_{io}\,\ell_{jo}\sin\theta_o$. An edge has a triangle on either side, with angles $\alpha_{ij}$ and
-# $\beta_{ij}$ that face it. (On a border there is only one; the other counts as 0.) The hats sum to 1 everywhere, so
-# each row of the matrix $C$ of all these integrals sums to 0. With $C_{ij} = -w_{ij}$ beside the diagonal, that settles
-# the diagonal too:
+# where the last step uses the lengths of the sides ($\ell_{jo}$: from $j$ to $o$): $h_i = 2T / \ell_{jo}$,
+# $h_j = 2T / \ell_{io}$ and $2T = \ell_{io}\,\ell_{jo}\sin\theta_o$. An edge has a triangle on either side, with angles
+# $\alpha_{ij}$ and $\beta_{ij}$ that face it. (On a border there is only one; the other counts as 0.) The hats sum to 1
+# everywhere, so each row of the matrix $C$ of all these integrals sums to 0. With $C_{ij} = -w_{ij}$ beside the
+# diagonal, that settles the diagonal too:
 #
 # $$ w_{ij} = \tfrac12 (\cot\alpha_{ij} + \cot\beta_{ij}), \qquad
 #    (C x)_i = \sum_j w_{ij} (x_i - x_j), \qquad  E(x) = \tfrac12\, x^T C x . \tag{6} $$
@@ -281,7 +286,8 @@ plt.show()
 # $$ C u = \mu\, M u . \tag{7} $$
 #
 # (Why eigenvectors? Look for the function that is least restless, $x^T C x$ as small as can be, among those of a fixed
-# size $x^T M x = 1$: where that is so, the two gradients are parallel, and that is (7), with $\mu$ as the energy.)
+# size $x^T M x = 1$: where that is so, the two gradients are parallel, and that is (7), with $\mu = x^T C x$, which is
+# twice the energy.)
 #
 # Low $\mu$: $u$ changes slowly over the surface. High $\mu$: it ripples. On the unit sphere the answer is known
 # exactly: $\mu = l(l+1)$ for $l = 0, 1, 2, \dots$, each $2l + 1$ times: 0, 2, 2, 2, 6 (five times), 12 (seven times) …
@@ -336,12 +342,14 @@ print(f"largest error of the first 36: cotangent {cotangent_spectrum_error:.1%},
 
 # %% [markdown]
 # *Figure: Eigenvalues of an unevenly sampled sphere; those of the cotangent Laplacian lie on the steps 0, 2, 6, 12, 20,
-# 30 of the exact answer, those of the uniform one leave them from the start.*
+# 30 of the exact answer, those of the uniform one lie on the first steps, to which they were scaled, and spread about
+# the later ones, more and more.*
 #
-# The steps are the proof: the cotangent Laplacian hears the *sphere*, the uniform one hears the *mesh*.
+# That is the difference: the cotangent Laplacian hears the *sphere*, the uniform one also hears the *mesh*.
 #
-# On a face the tones are a ladder from coarse to fine. Since they are orthonormal, any function on the surface is a sum
-# of them, and so are the coordinates $x, y, z$ of the surface itself. Leave out the high ones and the face is smoothed:
+# On a face the tones are a ladder from coarse to fine. There are as many tones as vertices, and they are orthonormal
+# ($u^T M u$ is 1 for a tone, and $u^T M v$ is 0 for two different ones). So any function on the surface is a sum of
+# them, and so are the coordinates $x, y, z$ of the surface itself. Leave out the high ones and the face is smoothed:
 # $V_k = U_k U_k^T M V$, where $U_k$ holds the lowest $k$ tones.
 
 # %%
@@ -436,7 +444,8 @@ assert np.allclose(sheared, tg.laplacian_align(bar, F_bar, ends, goals, weight=1
 #
 # $$ S_i = \sum_j e'_{ij}\, e_{ij}^T = U \Sigma V^T, \quad R_i = U\, \mathrm{diag}(1, 1, \det(U V^T))\, V^T . \tag{9} $$
 #
-# The singular value decomposition gives the answer (Kabsch 1976; in lesson 2 it is Procrustes). For
+# The singular value decomposition gives the answer (Kabsch 1976; in lesson 2 it is Procrustes). ($S_i$, $U$ and $V$ are
+# letters of this decomposition; they have nothing to do with $S$ in (3), the tones, or the vertices.) For
 # $\operatorname{tr}(R^T U \Sigma V^T) = \operatorname{tr}(Z \Sigma)$ with $Z = V^T R^T U$, whose columns have length 1,
 # so that no entry of it exceeds 1; the sum is greatest when the diagonal is all ones, $Z = I$, which is $R = U V^T$.
 # The determinant keeps it a rotation: without it, a mirror image may fit better.
@@ -584,15 +593,16 @@ print({title: f"{value:.0f}°" for title, value in angles.items()})
 # | linear in the anchors | yes | no | no |
 # | volume kept, no crossing | no | no | no |
 #
-# The line "linear" matters: to a linear method, half the displacement of the landmarks is half the displacement of
-# everything, and for fixed anchors all is one matrix, computed once.
+# The row "linear in the anchors" matters: to a linear method, half the displacement of the landmarks is half the
+# displacement of everything, and for fixed anchors all is one matrix, computed once.
 #
 # ## 6 · Aligning a face
 #
-# Now the purpose. A drawing, its landmarks, and the fitted face of lesson 5. Its landmarks miss those of the drawing.
-# The picture says where they belong in x and y; the depth of the fitted face is kept, because nothing better is known.
-# (`fit.camera` projects; `unproject` is the way back for a given depth.) The head has parts that hang together with
-# nothing, such as the teeth: `loose="follow"` takes them along. For the comparison the front of the face is enough.
+# Now the purpose. A drawing, its landmarks, and a face that was fitted as in lesson 5. Its landmarks miss those of the
+# drawing. The picture says where they belong in x and y; the depth of the fitted face is kept, because nothing better
+# is known. (`fit.camera` projects; `unproject` is the way back for a given depth.) The head has parts that hang
+# together with nothing, such as the teeth: `loose="follow"` takes them along. For the comparison the front of the face
+# is enough.
 
 # %%
 portrait = data_path("examples/portraits/beethoven.png")
@@ -610,7 +620,7 @@ smooth = tg.laplacian_align(front, F_face, rows, front[rows] + pull) - front
 
 C_front = cotangent(front, F_face)  # and the membrane, with the same displacements at the landmarks
 free = np.setdiff1d(np.arange(len(front)), rows)
-unique, first = np.unique(rows, return_index=True)
+unique, first = np.unique(rows, return_index=True)  # two landmarks may be the same vertex
 needle = np.zeros_like(front)
 needle[unique] = pull[first]
 needle[free] = splu(C_front[free][:, free].tocsc()).solve(-(C_front[free][:, unique] @ pull[first]))
@@ -765,7 +775,9 @@ print([f"{m:.4f} mm" for m in misses])
 
 
 # %%
-# 3. Where the plain bar shears it gets thin. Nothing in (8) or (10) speaks of volume, but what is not sheared keeps it.
+# 3. The cross-sections of the plain bar stay upright nearly up to its end, while its middle line rises and stays as
+#    long as it was: where it rises by an angle a, the bar keeps cos a of its thickness. In (8) and (10) the
+#    cross-sections turn along, so the volume is kept, although neither speaks of it.
 def volume(V: np.ndarray) -> float:
     """Of the bar, by the formula of the exercise."""
     return float(np.linalg.det(V[F_bar]).sum() / 6)

@@ -357,7 +357,7 @@ seen = np.unique(np.column_stack([row, column])[confidence >= 1], axis=0)
 seen = seen[~near[tuple(seen.T)]]
 difference = np.abs(flat[tuple(seen.T)].astype(int) - img[tuple(seen.T)].astype(int)).max(axis=1)
 back = float(np.median(difference))
-print(f"half of {len(seen)} pixels differ by {back:.0f} of 255 or less")
+print(f"median difference over {len(seen)} pixels: {back:.0f} of 255")
 
 # %% [markdown]
 # ## Exercises

@@ -112,6 +112,7 @@ show(
 # \quad\Longrightarrow\quad T_i = M_i C_i^{-1} . $$
 #
 # The weights $c_{ij}$ are those of the cotangent Laplacian (lesson 6): its entries beside the diagonal are $-c_{ij}$.
+# The few negative ones are left out here.
 
 
 # %%
@@ -220,7 +221,8 @@ print(f"farthest off the line: {angle_error:.2f} degrees")
 # \quad\Longrightarrow\quad
 # 2 \sum_j c_{ij}\,(p_i - p_j) = \sum_j c_{ij}\,(T_i + T_j)(v_i - v_j) , $$
 #
-# which is a linear system with the Laplacian, $2 L P = b$ (Eq. 8). One vertex is held.
+# which is a linear system with the Laplacian, $2 L P = b$ (Eq. 8). (The code divides both sides by 2.) One vertex is
+# held.
 
 
 # %%
@@ -425,7 +427,7 @@ print("RMS distance from the mean face:", *(f"{d:.1f} mm" for d in unlike))
 # 1. The other way: a bar that is bent by 300 degrees. What is *half* of it, by displacements and by angles?
 # 2. Logarithms are added in Eq. 5. When is $\exp(a + b) = \exp(a)\exp(b)$ for rotations? Try two turns of 30 degrees
 #    about the same axis, and about two that are perpendicular.
-# 3. Let one number $w$ scale the angles alone, with the gradients $\exp(w \log R_i)$ in Eq. 6 and no stretch. Write the
+# 3. Let one number $a$ scale the angles alone, with the gradients $\exp(a \log R_i)$ in Eq. 6 and no stretch. Write the
 #    derivative of this energy, and show with `tg.check_gradient` that it is right.
 #
 # ## Solutions
@@ -459,9 +461,9 @@ other_axis = np.degrees(np.linalg.norm(log(exp(x + z).transpose(0, 2, 1) @ (exp(
 print(f"same axis: equal, {bool(same_axis < 1e-12)}; perpendicular axes: {other_axis:.1f} degrees apart")
 
 # %% [markdown]
-# **3.** With $K_i$ the matrix of the cross product by $\log R_i$, $\frac{d}{dw} \exp(w K_i) = K_i \exp(w K_i)$. So
+# **3.** With $K_i$ the matrix of the cross product by $\log R_i$, $\frac{d}{da} \exp(a K_i) = K_i \exp(a K_i)$. So
 #
-# $$ E'(w) = -2 \sum_i \sum_j c_{ij}\, \big( e'_{ij} - \exp(w K_i)\, e_{ij} \big) \cdot K_i \exp(w K_i)\, e_{ij} . $$
+# $$ E'(a) = -2 \sum_i \sum_j c_{ij}\, \big( e'_{ij} - \exp(a K_i)\, e_{ij} \big) \cdot K_i \exp(a K_i)\, e_{ij} . $$
 #
 # `tg.check_gradient` takes steps of several lengths: what the linear approximation leaves must fall with the square of
 # the step, a slope of 2.
@@ -474,7 +476,7 @@ old, new = V[j] - V[i], arc[j] - arc[i]
 
 
 def energy(x):
-    """E and its derivative (1,) at one weight x (1,)."""
+    """E and its derivative (1,) at one number a, given as x (1,)."""
     turned = np.einsum("kab,kb->ka", exp(x[0] * w)[i], old)
     left = new - turned
     slope = np.cross(w[i], turned)
@@ -484,7 +486,7 @@ def energy(x):
 check = tg.check_gradient(energy, np.array([0.4]))
 grid = np.linspace(0, 2, 201)
 best = grid[np.argmin([energy(np.array([a]))[0] for a in grid])]
-print(f"slopes {check.slopes.min():.2f} to {check.slopes.max():.2f}; the least energy is at w = {best:.2f}")
+print(f"slopes {check.slopes.min():.2f} to {check.slopes.max():.2f}; the least energy is at a = {best:.2f}")
 
 # %%
 numbers: dict[str, float] = {

@@ -33,10 +33,11 @@ from toongeo.render import interpolate, rasterize
 # $$-\Delta u = 4 \;\text{ in }\Omega,\qquad u = 0 \;\text{ on }\partial\Omega,\qquad z = \sqrt{u}.$$
 #
 # Why 4, and why the root? Over a disc of radius $r$ the solution is $u = r^2 - x^2 - y^2$ (differentiate twice in $x$
-# and in $y$: $-\Delta u = 2 + 2$), so $z$ is **half a ball**. Over any other outline it is what comes closest to one.
+# and in $y$: $-\Delta u = 2 + 2$), so $z$ is **half a ball**. Over another outline it is a dome too, vertical at the
+# rim. (How high it is depends on the outline: exercise 1.)
 #
-# On pixels of side $h$ the Laplace operator is the *five-point stencil*: four times a pixel less its four neighbours.
-# Pixels outside the patch have $u = 0$, so they simply drop out of the sum.
+# On pixels of side $h$, $-h^2 \Delta$ is the *five-point stencil*: four times a pixel less its four neighbours. So the
+# right side becomes $4 h^2$. Pixels outside the patch have $u = 0$, so they simply drop out of the sum.
 
 
 # %%

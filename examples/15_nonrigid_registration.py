@@ -126,13 +126,15 @@ print(f"your head is {1000 * s:.2f} times as large as the template; its landmark
 #    + \lambda\Big(\underbrace{\beta\, d^\top L A^{-1} L\, d}_{\text{bending}}
 #    + \underbrace{\gamma\, d^\top L\, d}_{\text{stretching}}\Big) . $$
 #
-# $L$ is the cotangent Laplacian (lesson 6), $a_i$ the area about a vertex, $A$ their diagonal matrix. For given
-# partners $E$ is quadratic, so its minimum solves a linear system with the same matrix for x, y and z:
+# $L$ is the cotangent Laplacian (lesson 6), $a_i$ the area about a vertex, $A$ their diagonal matrix; $x^0$ is the
+# template at rest, and $p$ holds all partners. For given partners $E$ is quadratic, so its minimum solves a linear
+# system with the same matrix for x, y and z:
 #
 # $$ \big(A + W + \lambda(\beta L A^{-1} L + \gamma L)\big)\, d = A(p - x^0) + W(q - x^0) . $$
 #
-# The *stiffness* $\lambda$ begins high and falls: a stiff surface finds the large forms and cannot be led astray by a
-# few wrong partners; later it follows the details (Amberg, Romdhani and Vetter 2007: "optimal step nonrigid ICP").
+# ($W$ is diagonal, with $w$ at the picked points and 0 elsewhere. It is not the $W$ of section 1.) The *stiffness*
+# $\lambda$ begins high and falls: a stiff surface finds the large forms and cannot be led astray by a few wrong
+# partners; later it follows the details (Amberg, Romdhani and Vetter 2007: "optimal step nonrigid ICP").
 
 # %%
 front = model.region("face")
@@ -227,7 +229,7 @@ plt.show()
 # - partners must *face the same way* (cosine at least 0.5), or an upper lip would find the lower one;
 # - partners at borders, or far off against the others, pull less or not at all;
 # - a vertex slides along the surface ten times more easily than it leaves it;
-# - bending counts from the last level on, not from the start: large motions are not paid for twice.
+# - bending is measured from where the level before ended, so that a large motion is paid for once.
 
 # %%
 s_same = abs(found.scale / s - 1)
@@ -293,8 +295,8 @@ print("error against the motion:", ", ".join(f"{name} {error:.0%}" for name, err
 # nothing, so there it counts where along the surface the partner was found, and of your coarse mesh some fifty
 # vertices take part.
 #
-# On a command line: `toongeo rig head.obj --landmarks head.json -o head.glb`. To pick the points, any program will do
-# that writes 3D points, MeshLab's `.pp` for example.
+# On a command line: `toongeo rig head.obj --landmarks head.json -o head.glb`. `toongeo landmarks head.obj` lets you
+# click the points in a browser; MeshLab's `.pp` is read as well.
 #
 # ## Exercises
 #
@@ -309,7 +311,9 @@ print("error against the motion:", ", ".join(f"{name} {error:.0%}" for name, err
 #
 # **1.** $d^\top L A^{-1} L d$ has the unit of $(d/\text{mm}^2)^2\,\text{mm}^2$, partners that of $d^2\,\text{mm}^2$, so
 # $\beta$ is in mm$^4$. The wave is damped by $1/(1 + \lambda\beta(2\pi/\ell)^4)$, to one half where
-# $\ell = 2\pi(\lambda\beta)^{1/4}$.
+# $\ell = 2\pi(\lambda\beta)^{1/4}$. (That is bending alone. Stretching adds $\lambda\gamma(2\pi/\ell)^2$ to the
+# denominator, with $\gamma$ = 1 mm$^2$. This matters most at the first level: there the wave that is halved is 253 mm
+# long.)
 
 # %%
 half = {level: 2 * np.pi * (level * 1000.0) ** 0.25 for level in (1000.0, 10.0, 0.1, 0.01)}

@@ -36,3 +36,4 @@ def test_faces_open_mouth_and_close_eyes_in_their_own_size(numbers):
 def test_solutions(numbers):
     assert abs(numbers["rise_twisted"]) < 0.1 < 15 < numbers["rise_aligned"]
     assert numbers["thickening_without_root"] == pytest.approx(4)
+    assert numbers["turned_without_root"] > 0.1 > 1e6 * numbers["bar_turned"]

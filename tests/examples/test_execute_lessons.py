@@ -1,11 +1,14 @@
 """What makes notebooks of scripts, on a small lesson of its own."""
 
+import json
+
 import pytest
 
 pytest.importorskip("jupytext")
+nbformat = pytest.importorskip("nbformat")
 pytest.importorskip("nbclient")
 
-from docs.execute_lessons import PRIVATE, caption_of, code_digest, executed, paired, same_text, shows
+from docs.execute_lessons import PRIVATE, caption_of, code_digest, executed, paired, same_text, shows  # noqa: E402
 
 LESSON = """# %% [markdown]
 # # Why?
@@ -100,3 +103,14 @@ def test_numbers_may_differ_in_their_last_digits_and_words_not():
 def test_paths_and_addresses_are_seen_and_fractions_are_not():
     assert PRIVATE.search("in /home/me/x") and PRIVATE.search("<object at 0x7f3a2b1c>")
     assert not PRIVATE.search("RMS / usr, a/b, examples/portraits, https://host.org/home/page")
+
+
+@pytest.mark.parametrize("text", ["C:\\Users\\me", "at D:\\new\\x", "E:\\table.txt"])
+def test_a_windows_path_is_seen_as_text_and_in_json(text):
+    assert PRIVATE.search(text) and PRIVATE.search(json.dumps(text)) and PRIVATE.search(repr(text))
+
+
+def test_a_line_of_code_that_ends_in_a_capital_and_a_colon_is_no_drive():
+    cell = nbformat.v4.new_code_cell("class C:\n    pass\nwith A as B:\n\tpass\nprint('C:\\n')")
+    assert not PRIVATE.search(nbformat.writes(nbformat.v4.new_notebook(cells=[cell])))
+    assert not PRIVATE.search(cell.source)
