@@ -16,6 +16,7 @@ import concurrent.futures
 import hashlib
 import io
 import itertools
+import json
 import os
 import re
 import sys
@@ -28,7 +29,7 @@ import numpy as np
 from nbclient import NotebookClient
 from PIL import Image
 
-__all__ = ["PRIVATE", "caption_of", "code_digest", "executed", "main", "paired", "same_text", "shows"]
+__all__ = ["PRIVATE", "caption_of", "checked", "code_digest", "executed", "main", "paired", "same_text", "shows"]
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 # Absolute paths and addresses of objects: neither means anything to a reader. Of a Windows path the drive counts with
@@ -41,6 +42,8 @@ _NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 _CAPTION = re.compile(r"\*?Figure[^:]*: *(.+?)\*?", re.DOTALL)
 # A cell that takes longer is broken: a whole lesson takes less than 30 s on one core that it has to itself.
 _CELL_SECONDS = 600
+# Asked after the last cell, and of no notebook.
+_NUMBERS = "import json\nprint(json.dumps({name: float(x) for name, x in globals().get('numbers', {}).items()}))"
 _METADATA = {
     "jupytext": {"text_representation": {"extension": ".py", "format_name": "percent"}},
     "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
@@ -73,8 +76,8 @@ def code_digest(notebook: nbformat.NotebookNode) -> str:
     return hashlib.sha256(code.encode()).hexdigest()
 
 
-def executed(script: Path) -> nbformat.NotebookNode:
-    """The lesson with outputs, executed by a new kernel in its folder, as JupyterLab would.
+def executed(script: Path) -> tuple[nbformat.NotebookNode, dict[str, float]]:
+    """The lesson with outputs, executed by a new kernel in its folder, as JupyterLab would, and its `numbers`.
 
     Raises
     ------
@@ -85,6 +88,7 @@ def executed(script: Path) -> nbformat.NotebookNode:
     os.environ |= {"PYTHONHASHSEED": "0", "PYTHONPATH": os.pathsep.join([str(EXAMPLES.parent), *_python_path()])}
     os.environ.pop("MPLBACKEND", None)
     notebook = paired(script)
+    notebook.cells.append(nbformat.v4.new_code_cell(_NUMBERS))
     client = NotebookClient(
         notebook,
         timeout=_CELL_SECONDS,
@@ -95,6 +99,7 @@ def executed(script: Path) -> nbformat.NotebookNode:
     )
     metadata = notebook.metadata
     client.execute()
+    numbers = json.loads(notebook.cells.pop().outputs[0].text)
     notebook.metadata = metadata | nbformat.from_dict(_METADATA)
     for i, cell in enumerate(notebook.cells):
         if cell.cell_type == "code":
@@ -103,7 +108,13 @@ def executed(script: Path) -> nbformat.NotebookNode:
             for output in cell.outputs:
                 _check(output, f"{script.stem}, cell {i}")
     nbformat.validate(notebook)
-    return notebook
+    return notebook, numbers
+
+
+def checked(script: Path) -> tuple[list[str], dict[str, float]]:
+    """What the lesson, executed anew, shows in other words or numbers than its notebook, and its `numbers`."""
+    notebook, numbers = executed(script)
+    return _differences(nbformat.read(script.with_suffix(".ipynb"), 4), notebook), numbers
 
 
 def _python_path() -> list[str]:
@@ -204,11 +215,12 @@ def _differences(old: nbformat.NotebookNode, new: nbformat.NotebookNode) -> list
 
 def _lesson(script: Path, check: bool) -> tuple[str, float, list[str]]:
     start = time.perf_counter()
-    notebook, path, faults = executed(script), script.with_suffix(".ipynb"), []
+    faults: list[str] = []
     if check:
-        faults = _differences(nbformat.read(path, 4), notebook)
+        faults, _ = checked(script)
     else:
-        path.write_text(nbformat.writes(notebook) + "\n", encoding="utf-8", newline="\n")
+        content = nbformat.writes(executed(script)[0]) + "\n"
+        script.with_suffix(".ipynb").write_text(content, encoding="utf-8", newline="\n")
     return script.stem, time.perf_counter() - start, faults
 
 

@@ -1,4 +1,4 @@
-"""What tests of the lessons share: the numbers that a lesson ends with, and the lessons themselves."""
+"""What tests of the lessons share: a lesson executed once, and the numbers that it ends with."""
 
 import json
 import os
@@ -10,31 +10,29 @@ import pytest
 from tests.conftest import ROOT
 
 EXAMPLES = ROOT / "examples"
-# Shows what a person sees who runs the script by hand, and then its numbers on a line of their own.
 _RUN = """
-import json, runpy, sys
-numbers = runpy.run_path(sys.argv[1], run_name="__main__")["numbers"]
-print("\\n" + json.dumps({name: float(value) for name, value in numbers.items()}))
+import json, sys
+from pathlib import Path
+from docs.execute_lessons import checked
+print(json.dumps(checked(Path(sys.argv[1]))))
 """
 
 
 @pytest.fixture(scope="session")
-def numbers_of(once, tmp_path_factory):
-    """``numbers_of("05_fitting")`` -> the dict `numbers` of that lesson, run as a plain script, once in a run of tests.
+def checked_lesson(once):
+    """``checked_lesson("05_fitting")`` -> what that lesson shows that its notebook does not, and its `numbers`.
 
-    The script runs in a process of its own, in an empty folder, without a display. Warnings are errors. Tests that use
-    this are slow: ``pytestmark = pytest.mark.slow``.
+    A new kernel executes it, once in a run of tests. Tests that use this are slow: ``pytestmark = pytest.mark.slow``.
     """
     pytest.importorskip("matplotlib")
+    pytest.importorskip("nbclient")
+    pytest.importorskip("jupytext")
 
     def run(stem):
-        # Where a display is missing, plt.show() says so on some systems.
-        command = [sys.executable, "-W", "error", "-W", "ignore:FigureCanvasAgg is non-interactive:UserWarning"]
-        environment = os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
         done = subprocess.run(
-            [*command, "-c", _RUN, str(EXAMPLES / f"{stem}.py")],
-            cwd=tmp_path_factory.mktemp("elsewhere"),
-            env=environment,
+            [sys.executable, "-c", _RUN, str(EXAMPLES / f"{stem}.py")],
+            cwd=ROOT,
+            env=os.environ | {"PYTHONIOENCODING": "utf-8"},
             capture_output=True,
             text=True,
             encoding="utf-8",
@@ -44,3 +42,9 @@ def numbers_of(once, tmp_path_factory):
         return json.loads(done.stdout.splitlines()[-1])
 
     return lambda stem: once(f"lesson-{stem}", lambda: run(stem))
+
+
+@pytest.fixture(scope="session")
+def numbers_of(checked_lesson):
+    """``numbers_of("05_fitting")`` -> the dict `numbers` of that lesson, as :func:`checked_lesson` executed it."""
+    return lambda stem: checked_lesson(stem)[1]

@@ -56,9 +56,12 @@ def test_cells_and_ids_follow_from_the_text_alone(script):
 def test_executing_twice_gives_the_same_bytes_with_captions(script):
     import nbformat
 
-    first, second = (nbformat.writes(executed(script)) for _ in range(2))
-    assert first == second
-    cells = executed(script).cells
+    script.write_text(LESSON + "numbers = {'one': 1}\n")
+    notebook, numbers = executed(script)
+    first, second = nbformat.writes(notebook), nbformat.writes(executed(script)[0])
+    assert first == second and numbers == {"one": 1.0}
+    cells = notebook.cells
+    assert len(cells) == 5
     assert cells[1].outputs[0].text == "one\n0.333\n"
     assert cells[2].outputs[0].metadata["image/png"]["alt"] == "A line that goes up."
     assert "iopub" not in first and 'execution"' not in first

@@ -57,6 +57,11 @@ def test_what_shows_something_has_an_output_and_nothing_failed(script):
         assert "picture" not in wanted or _pictures(cell), cell.source
 
 
+@pytest.mark.slow
+def test_executed_from_clean_it_shows_what_is_kept(script, checked_lesson):
+    assert checked_lesson(script.stem)[0] == []
+
+
 def test_each_figure_has_an_alternative_text(script):
     notebook = _notebook(script)
     for i, cell in _code(notebook):
