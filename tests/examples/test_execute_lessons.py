@@ -8,7 +8,7 @@ pytest.importorskip("jupytext")
 nbformat = pytest.importorskip("nbformat")
 pytest.importorskip("nbclient")
 
-from docs.execute_lessons import PRIVATE, caption_of, code_digest, executed, paired, same_text, shows  # noqa: E402
+from execute_lessons import PRIVATE, caption_of, code_digest, executed, paired, same_text, shows  # noqa: E402
 
 LESSON = """# %% [markdown]
 # # Why?

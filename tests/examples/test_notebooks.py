@@ -14,7 +14,7 @@ pytest.importorskip("jupytext")
 nbformat = pytest.importorskip("nbformat")
 pytest.importorskip("nbclient")
 
-from docs.execute_lessons import PRIVATE, caption_of, code_digest, paired, shows  # noqa: E402
+from execute_lessons import PRIVATE, caption_of, code_digest, paired, shows  # noqa: E402
 
 SCRIPTS = sorted((ROOT / "examples").glob("[0-9][0-9]_*.py"))
 # A page of a code host shows a notebook of this size; larger ones make the repository heavy.

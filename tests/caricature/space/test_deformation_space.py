@@ -201,7 +201,7 @@ def test_a_file_gives_the_same_space(small, tmp_path):
 
 def test_other_files_are_refused(tmp_path):
     np.savez(tmp_path / "other.npz", x=np.zeros(3))
-    with pytest.raises(ValueError, match="path: expected a deformation space of format 1, got no 'format'"):
+    with pytest.raises(ValueError, match="path: expected a deformation space of format 1, got no .*'format'"):
         DeformationSpace.load(tmp_path / "other.npz")
 
 

@@ -15,7 +15,7 @@ def test_mean_and_covariance_become_those_of_the_reference(rng):
     target = (rng.normal(size=(4000, 3)) @ np.array([[12, 0, 0], [6, 4, 0], [1, 2, 9]]) + [70, -10, 3]).astype(
         np.float32
     )
-    moved = _mapped(source[None], source, target)[0]
+    moved = _mapped(source[None], source, target, target)[0]
     np.testing.assert_allclose(moved.mean(axis=0), target.mean(axis=0), atol=1e-2)
     np.testing.assert_allclose(np.cov(moved.T), np.cov(target.T), atol=2.5)
 
@@ -23,7 +23,7 @@ def test_mean_and_covariance_become_those_of_the_reference(rng):
 def test_the_map_is_symmetric_and_its_own_colours_stay(rng):
     """The least effort between Gaussians is a symmetric map; between equal ones it is none."""
     source = rng.normal(size=(900, 3)).astype(np.float32) * 9
-    np.testing.assert_allclose(_mapped(source[None], source, source)[0], source, atol=1e-3)
+    np.testing.assert_allclose(_mapped(source[None], source, source, source)[0], source, atol=1e-3)
 
 
 def test_skin_takes_the_references_colour(cartoon):
@@ -52,6 +52,14 @@ def test_a_photograph_gets_the_lines_and_tones_of_a_drawing(cartoon):
     assert flat.mean() > 0.7
     eye = np.rint(points[[37, 41]].mean(axis=0)).astype(int)
     assert np.abs(result[eye[1], eye[0]].astype(int) - img[eye[1], eye[0]]).max() < 90  # it is still there
+
+
+@pytest.mark.parametrize("name", ["moustache_man", "astronaut"])
+def test_a_picture_in_its_own_style_stays(cartoon, name):
+    """Lines of a drawing, and the shading of a photograph, are not done anew."""
+    img, points = cartoon(name)
+    off = np.abs(tg.match_style(img, img, points, points).astype(int) - img).max(axis=2)
+    assert off.mean() < 0.3 and (off > 8).mean() < 0.003
 
 
 def test_what_is_refused(cartoon):
