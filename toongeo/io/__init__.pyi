@@ -6,6 +6,7 @@ from toongeo.io.check_landmarks import check_landmarks as check_landmarks
 from toongeo.io.encode_glb import encode_glb as encode_glb
 from toongeo.io.encode_image import encode_image as encode_image
 from toongeo.io.glb_scene import glb_scene as glb_scene
+from toongeo.io.gltf.spring_chains import SpringChains as SpringChains
 from toongeo.io.landmark_array import landmark_array as landmark_array
 from toongeo.io.landmarks.landmark_schemes import SCHEMES as SCHEMES
 from toongeo.io.landmarks.landmark_schemes import ibug_points as ibug_points
@@ -34,7 +35,6 @@ from toongeo.io.scene import Scene as Scene
 from toongeo.io.scene import SceneAnimation as SceneAnimation
 from toongeo.io.scene import SceneMesh as SceneMesh
 from toongeo.io.split_seams import split_seams as split_seams
-from toongeo.io.spring_chains import SpringChains as SpringChains
 from toongeo.io.trimesh_scene import trimesh_scene as trimesh_scene
 from toongeo.io.writers.animate_glb import animate_glb as animate_glb
 from toongeo.io.writers.animate_glb import head_bone as head_bone

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo._brief_repr import brief_repr
-from toongeo.io.spring_chains import SpringChains
+from toongeo.io.gltf.spring_chains import SpringChains
 
 __all__ = ["METRES", "Scene", "SceneAnimation", "SceneMesh"]
 
