@@ -1,13 +1,11 @@
 """``toongeo landmarks``: the editor in the browser."""
 
-import contextlib
-import webbrowser
 from functools import partial
 from pathlib import Path
 
-from toongeo.app.editor.editor_server import EditorServer
 from toongeo.app.editor.editor_session import EditorSession
 from toongeo.app.editor.picture_list import PictureList
+from toongeo.app.editor.serve_session import serve_session
 from toongeo.pipeline import detect_landmarks
 
 __all__ = ["edit_landmarks"]
@@ -48,8 +46,4 @@ def edit_landmarks(
     if face < 0:
         raise ValueError(f"face: expected 0 for the largest face, 1 for the next, ..., got {face}")
     session = EditorSession(PictureList(path, landmarks, output, face=face), partial(detect_landmarks, face=face))
-    with EditorServer(session, port) as server, contextlib.suppress(KeyboardInterrupt):
-        print(f"editor: {server.url}\nCtrl+C ends", flush=True)
-        if show:
-            webbrowser.open(server.url)
-        server.serve_forever()
+    serve_session(session, port, "editor", "Ctrl+C ends", show=show)

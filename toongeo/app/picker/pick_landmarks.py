@@ -1,12 +1,10 @@
 """``toongeo model pick`` and ``toongeo landmarks`` of a mesh: the picker in the browser."""
 
-import contextlib
-import webbrowser
 from pathlib import Path
 
 from toongeo.app.check_output import check_output
 from toongeo.app.commands.path_is import path_is
-from toongeo.app.editor.editor_server import EditorServer
+from toongeo.app.editor.serve_session import serve_session
 from toongeo.app.picker.picked_mesh import picked_mesh, picked_model
 from toongeo.app.picker.picker_session import FORMATS, PickerSession
 
@@ -57,8 +55,4 @@ def pick_landmarks(
     mesh = picked_model(path, format=format, expression=expression, cache=cache) if as_model else picked_mesh(path)
     with path_is("landmarks"):
         session = PickerSession(mesh, path.name, target, landmarks)
-    with EditorServer(session, port) as server, contextlib.suppress(KeyboardInterrupt):
-        print(f"picker: {server.url}\nit saves {target}; Ctrl+C ends", flush=True)
-        if show:
-            webbrowser.open(server.url)
-        server.serve_forever()
+    serve_session(session, port, "picker", f"it saves {target}; Ctrl+C ends", show=show)

@@ -11,7 +11,7 @@ from toongeo._brief_repr import brief_repr
 from toongeo._read_only import read_only
 from toongeo.arrays import Bytes, Floats, Integers
 from toongeo.geometry.mirror_partners import mirror_partners
-from toongeo.io import MESH_SUFFIXES, SceneMesh, read_mesh
+from toongeo.io import MESH_SUFFIXES, SceneMesh, read_glb, read_mesh
 from toongeo.model import MorphableModel, load_model, model_format
 
 __all__ = ["PickedMesh", "picked_mesh", "picked_model"]
@@ -90,8 +90,6 @@ def picked_model(
 
 def _has_targets(path: Path) -> bool:
     """Whether a GLB is a model: one with targets is, and its largest mesh is what counts."""
-    from toongeo.io import read_glb
-
     if path.suffix.lower() != ".glb":
         return False
     return any(mesh["primitives"][0].get("targets") for mesh in read_glb(path).json.get("meshes", []))
