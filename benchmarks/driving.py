@@ -41,7 +41,8 @@ def main() -> None:
         page()
         return
     found = pictures(sys.argv[1:])
-    print("| head | known | neutral frame | 1/3 px noise | still, 1 px: s.d. | ms a frame | scipy ms | ratio |")
+    print("| head | known performer | only a neutral frame known ", end="")
+    print("| 1/3 px noise | still, 1 px: max s.d. | ms a frame | `least_squares`, ms | its time / ours |")
     print("|---|---|---|---|---|---|---|---|")
     for picture in found:
         print(row(picture.name, read_image(picture.image), read_landmarks(picture.landmarks)), flush=True)

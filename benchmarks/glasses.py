@@ -75,15 +75,15 @@ def main() -> None:
     parser.add_argument("--renders", type=int, default=0)
     options = parser.parse_args()
     found, counts = pictures(options.folders), np.zeros(3, int)
-    print(f"{'':<26} as it is  thin   thick   brown   dark")
+    print("| picture | as it is | thin | thick | brown | dark |\n|---|---|---|---|---|---|")
     for picture in found:
         img, landmarks = read_image(picture.image), read_landmarks(picture.landmarks)
         kinds = [kind(worn(img, landmarks, *frame), landmarks) for frame in FRAMES]
         kinds.append(kind(worn(img, landmarks, 0.1, (25, 22, 22), 2.0, dark=True), landmarks))
         own = kind(img, landmarks)
-        print(f"{picture.name:<26} {own:8}  " + " ".join(f"{name:7}" for name in kinds), flush=True)
+        print(f"| {picture.name} | " + " | ".join([own, *kinds]) + " |", flush=True)
         counts += own != "-", sum(name != "-" for name in kinds[:3]), kinds[3] == "dark"
-    print(f"of {len(found)}: {counts[0]} as they are; {counts[1]} of {3 * len(found)} frames, {counts[2]} dark glasses")
+    print(f"\nof {len(found)}: {counts[0]} as they are; {counts[1]} of {3 * len(found)} frames, {counts[2]} dark glasses")
     if options.renders:
         on_renders(options.renders)
     print(roles("glasses", [picture.name for picture in found]))
