@@ -83,7 +83,8 @@ def main() -> None:
         own = kind(img, landmarks)
         print(f"| {picture.name} | " + " | ".join([own, *kinds]) + " |", flush=True)
         counts += own != "-", sum(name != "-" for name in kinds[:3]), kinds[3] == "dark"
-    print(f"\nof {len(found)}: {counts[0]} as they are; {counts[1]} of {3 * len(found)} frames, {counts[2]} dark glasses")
+    frames = f"{counts[1]} of {3 * len(found)} frames"
+    print(f"\nof {len(found)}: {counts[0]} as they are; {frames}, {counts[2]} dark glasses")
     if options.renders:
         on_renders(options.renders)
     print(roles("glasses", [picture.name for picture in found]))

@@ -116,9 +116,9 @@ def registrations(template: MorphableModel, head: MorphableModel, with_amberg: b
         "nonrigid_register": lambda: nonrigid_register(
             template.mean, template.faces, target, head.faces, vertices, points[INNER], fitted=fitted
         ).vertices[used],
-        "with the rims of eyes and lips (`rig_mesh`)": lambda: register_face(target, head.faces, points, template).registration.vertices[
-            used
-        ],
+        "with the rims of eyes and lips (`rig_mesh`)": lambda: register_face(
+            target, head.faces, points, template
+        ).registration.vertices[used],
     }
     if with_amberg:
         ways["trimesh nricp_amberg (face only)"] = lambda: amberg(aligned, F, landmarks, head)
