@@ -266,10 +266,10 @@ print(f"with each of them moved by half a millimetre, {low:.0f} to {high:.0f} mm
 print(f"by the library: {eyes.radii[0]:.0f} mm")
 
 # %% [markdown]
-# On points of a whole sphere the four unknowns are found exactly. From the edges of lids alone they are nearly
-# arbitrary: the edges lie almost in one plane, and through a plane circle go spheres of every size. So the library's
-# `tg.fit_eyes` adds what is known of eyes (how large they are beside their opening) and what must not happen (the
-# eyeball coming out of the cheek).
+# On points of a whole sphere the four unknowns are found exactly. The edges of lids are only a narrow band of it,
+# nearly a circle in a plane, and through such a circle go spheres of every size: half a millimetre at six points moves
+# the radius by a tenth. So the library's `tg.fit_eyes` adds what is known of eyes (how large they are beside their
+# opening) and what must not happen (the eyeball coming out of the cheek).
 #
 # Then the gaze. A vertex of the eyeball is $c + r\,R\,u$, with $u$ on the unit sphere and a rotation $R$. To look to
 # the left is a turn about the vertical axis. How far an eye may turn before its iris would leave the lids stands in
