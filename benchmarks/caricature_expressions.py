@@ -154,8 +154,9 @@ def normal_table() -> None:
     best = optimize(NORMAL, NORMAL, model.mean[AT], F)[ACTING]
     off = np.linalg.norm(best - wanted, axis=(1, 2)) / np.linalg.norm(wanted, axis=(1, 2))
     peak = np.linalg.norm(best, axis=2).max(axis=1) / np.linalg.norm(wanted, axis=2).max(axis=1)
-    print(f"\nNormal face: |D* - M D| / |M D| {100 * off.mean():.1f} % (worst {100 * off.max():.1f} %), ", end="")
-    print(f"peak motion kept {100 * peak.mean():.1f} % (least {100 * peak.min():.1f} %)")
+    print("\n| a normal face as input | mean | worst |\n|---|---|---|")
+    print(f"| D* off M D, % | {100 * off.mean():.1f} | {100 * off.max():.1f} |")
+    print(f"| peak motion kept, % | {100 * peak.mean():.1f} | {100 * peak.min():.1f} |\n")
     ours, rival = [], []
     for _ in range(2):
         started = time.process_time()
