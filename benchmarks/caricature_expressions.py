@@ -236,11 +236,11 @@ def picture_table(files: list[Path], sheets: Path | None) -> None:
             write_image(sheets / f"{path.stem}_expressions.png", np.vstack([np.hstack(pair) for pair in pairs]))
     base = np.mean(rows["not optimized"], axis=0)[0]
     print(f"\n{len(files)} drawings: correlation matrix against the normal face's, and what moves that should not\n")
-    print("| method | rms of cosines | of the unoptimized | blink outside the eye, % | outside the mask, % |")
-    print("|---|---|---|---|---|")
+    print("| method | deviation of the cosines, % of the unoptimized ", end="")
+    print("| blink outside the eye, % of the face | outside / inside the mask, % |\n|---|---|---|---|")
     for name, values in rows.items():
         cosines, blink, outside, _ = np.mean(values, axis=0)
-        print(f"| {name} | {cosines:.3f} | {100 * cosines / base:.0f} % | {blink:.2f} | {outside:.1f} |")
+        print(f"| {name} | {100 * cosines / base:.0f} | {blink:.2f} | {outside:.1f} |")
     print(roles("caricature_expressions", [path.stem for path in files]))
     print(f"\nshape stage: {np.median([row[3] for row in rows['caricature_rig']]):.1f} s (median)")
 

@@ -129,13 +129,13 @@ def row(avatar: Avatar, img: np.ndarray) -> list[float]:
 
 def main() -> None:
     found, rows = pictures(sys.argv[1:]), []
-    print("| picture | soot % | spread | nose | skull % | ears | forehead |\n|---|---|---|---|---|---|---|")
+    print("| picture | soot % | nose | skull % | ears | forehead |\n|---|---|---|---|---|---|")
     for picture in found:
         img = read_image(picture.image)
         rows.append(row(make_avatar(img, read_landmarks(picture.landmarks)), img))
-        soot, spread, tip, top, flap, levels = rows[-1]
+        soot, _, tip, top, flap, levels = rows[-1]
         print(
-            f"| {picture.name} | {soot:.1f} | {spread:.1f} | {tip:.2f} | {top:.1f} | {flap:.2f} | {levels:.1f} |",
+            f"| {picture.name} | {soot:.1f} | {tip:.2f} | {top:.1f} | {flap:.2f} | {levels:.0f} |",
             flush=True,
         )
     soot, _, tip, top, flap, levels = np.array(rows).T
