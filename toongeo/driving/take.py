@@ -100,7 +100,7 @@ class Take:
             raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
         if self.seconds * fps >= _MOST_FRAMES:
             raise ValueError(
-                f"fps: expected at most {_MOST_FRAMES} frames, got {self.seconds:.0f} s at {fps:g} frames a second"
+                f"fps: expected at most {_MOST_FRAMES} frames, got {self.seconds:.6g} s at {fps:g} frames a second"
             )
         times = np.arange(int(self.seconds * fps + 1e-6) + 1) / fps
 

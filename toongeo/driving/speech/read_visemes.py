@@ -11,6 +11,7 @@ import numpy as np
 
 from toongeo.driving.speech.viseme_table import AZURE, RHUBARB, oculus_viseme
 from toongeo.driving.speech.viseme_track import VisemeTrack
+from toongeo.reading.decoded import decoded
 
 __all__ = ["read_visemes"]
 
@@ -55,7 +56,7 @@ def read_visemes(path: str | os.PathLike[str]) -> VisemeTrack:
     ('sil', 'E', 'sil')
     """
     path = Path(path)
-    text = path.read_bytes().decode("utf-8-sig", errors="replace")
+    text = decoded(path.read_bytes(), "replace")
     try:
         rows = _read_json(text) if text.lstrip()[:1] in ("{", "[") else _read_table(text)
         return _track(rows)
