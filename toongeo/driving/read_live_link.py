@@ -85,7 +85,7 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None, ga
     head = np.column_stack([filled[name] for name in _HEAD]) if set(_HEAD) <= set(filled) else None
     if head is not None and np.abs(head).max() > _TURN:
         head = np.radians(head)
-        notes += (f"turns of the head of up to {np.degrees(np.abs(head).max()):.4g} were taken for degrees",)
+        unit += (f"turns of the head of up to {np.degrees(np.abs(head).max()):.4g} were taken for degrees",)
     if repeated:
         notes += (f"{repeated} frames with the time of the one before were left out",)
     if missing.any():

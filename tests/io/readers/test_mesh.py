@@ -115,6 +115,14 @@ def test_files_are_not_opened_for_a_file(tmp_path, scene):
     assert read_mesh(tmp_path / "b.glb").meshes[0].texture is None
 
 
+def test_nothing_is_said_of_a_picture_that_a_file_names(tmp_path, mesh, caplog):
+    mesh.export(tmp_path / "a.ply", encoding="ascii")
+    content = (tmp_path / "a.ply").read_text().replace("ply\n", "ply\ncomment TextureFile skin.png\n", 1)
+    (tmp_path / "a.ply").write_text(content)
+    assert len(read_mesh(tmp_path / "a.ply").meshes[0].faces) == len(mesh.faces)
+    assert not caplog.records  # trimesh logs a traceback
+
+
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("damage", ["cut", "junk", "empty", "text"])
 def test_damaged_files_are_named(tmp_path, mesh, kind, damage):
