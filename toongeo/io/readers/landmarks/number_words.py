@@ -28,7 +28,7 @@ _MISSING = frozenset(
         "-1.#ind00",
     )
 )
-_BRACKETS = str.maketrans("()[]\"", "     ")
+_BRACKETS = str.maketrans('()[]"', "     ")
 # One comma between digits in each word, as in 37,94 236,1 or 37,94;236,1: then it stands before decimals.
 _DECIMAL_COMMAS = re.compile(r"[+-]?\d+(?:,\d+)?(?:e[+-]?\d+)?", re.IGNORECASE)
 
@@ -60,10 +60,9 @@ def words(line: str) -> list[str]:
 
 
 def _with_points(line: str) -> str:
-    """A line with points before decimals, if commas stand there: two or three numbers, or between semicolons."""
+    """A line with points before decimals, if commas stand there: in a row of two to four numbers."""
     if "," not in line or "." in line:
         return line
     parts = line.replace(";", " ").split()
-    if (";" in line or len(parts) in (2, 3)) and all(map(_DECIMAL_COMMAS.fullmatch, parts)):
-        return line.replace(",", ".")
-    return line
+    decimal = len(parts) in (2, 3, 4) and all(map(_DECIMAL_COMMAS.fullmatch, parts))
+    return line.replace(",", ".") if decimal else line
