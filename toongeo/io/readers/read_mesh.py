@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import re
 from io import BytesIO
@@ -104,7 +103,7 @@ def _meshes(content: bytes, kind: str) -> list[SceneMesh]:
     import trimesh  # only here: it takes longer to import than an OBJ to read
 
     # From memory, so that a file cannot name others to be opened; of a picture that is named trimesh shows a traceback.
-    log = logging.getLogger("trimesh")
+    log = trimesh.util.log
     before, log.disabled = log.disabled, True
     try:
         scene = trimesh.load_scene(BytesIO(content), file_type=kind, process=False)
