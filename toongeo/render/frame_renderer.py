@@ -32,7 +32,7 @@ class FrameRenderer:
 
     What does not change from frame to frame is prepared once: all textures in one picture, in linear light and filtered
     for the size in which they are seen, and where in it each triangle lies. OpenCV draws these places and the light of
-    the vertices, and the picture is looked up once for all pixels. Only pixels at which one surface ends and another begins are
+    the vertices, and the picture is looked up once for all pixels. Only where one surface ends and another begins is it
     supersampled (2 x 2); inside a surface one sample of the filtered texture is enough.
 
     Parameters
