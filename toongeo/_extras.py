@@ -9,9 +9,12 @@ REQUIREMENTS = {
     "serve": "websockets>=14",
     "notebook": "anywidget>=0.9.13",
     "models": "h5py>=3.11",
+    "video": "av>=14",
+    "batch": "joblib>=1.4",
     "dlib": "dlib>=19.24",
     "mediapipe": "mediapipe>=0.10.14",
     "onnx": "onnxruntime>=1.18",
+    "cluster": "distributed>=2024.1",
 }
 
 

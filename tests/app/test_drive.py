@@ -224,7 +224,7 @@ def test_an_opencv_without_encoder(tmp_path, monkeypatch):
     monkeypatch.setattr(video, "has_pyav", lambda: False)
     with pytest.raises(OSError, match="OpenCV has no encoder for VP9 and VP8 here"):
         write_video(tmp_path / "a.mp4", iter([]), 32, 30)
-    with pytest.raises(ImportError, match=re.escape('sound in a video needs PyAV: pip install "toongeo[video]"')):
+    with pytest.raises(ImportError, match=re.escape('sound in a video needs the extra video: pip install "av>=14"')):
         write_video(tmp_path / "a.mp4", iter([]), 32, 30, sound=Sound(tmp_path / "a.wav"))
     monkeypatch.undo()
     assert os.listdir(tmp_path) == []

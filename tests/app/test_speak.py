@@ -59,7 +59,7 @@ def test_a_video_has_the_sound(glb, cues, voice, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(module, "has_pyav", lambda: False)
     assert main(arguments) == 0
     assert not has_sound(out)
-    assert 'note: the video is silent; PyAV adds the sound: pip install "toongeo[video]"' in capsys.readouterr().err
+    assert 'note: the video is silent; its sound needs the extra video: pip install "av>=14"' in capsys.readouterr().err
 
 
 def test_bad_input_is_one_line(glb, cues, tmp_path, capsys):

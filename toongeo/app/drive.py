@@ -4,6 +4,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from toongeo._extras import missing_extra
 from toongeo.app.check_output import check_output
 from toongeo.app.read_take import TakeSource
 from toongeo.app.video.film_options import FilmOptions
@@ -146,13 +147,13 @@ def _sound(source: TakeSource, sound: Path | None, options: FilmOptions) -> Soun
     heard = Sound(Path() if sound is None else sound, options.start or 0.0)
     if sound is not None:
         if not has_pyav():
-            raise ImportError('sound in a video needs PyAV: pip install "toongeo[video]"')
+            raise ImportError(missing_extra("sound in a video", "video"))
         if not has_sound(sound):
             raise ValueError(f"sound: expected a file with a sound, got {sound}")
         return heard
     if source.video is None:
         return None
     if not has_pyav():
-        print('note: the video is silent; PyAV keeps the sound: pip install "toongeo[video]"', file=sys.stderr)
+        print(f"note: the video is silent; {missing_extra('its sound', 'video')}", file=sys.stderr)
         return None
     return replace(heard, path=source.video) if has_sound(source.video) else None

@@ -4,6 +4,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from toongeo._extras import missing_extra
 from toongeo.app.commands.path_is import path_is
 from toongeo.app.drive import check_performance, perform
 from toongeo.app.video.film_options import FilmOptions
@@ -50,7 +51,7 @@ def speak(
         if has_pyav():
             sound = Sound(audio, options.start or 0.0)
         else:
-            print('note: the video is silent; PyAV adds the sound: pip install "toongeo[video]"', file=sys.stderr)
+            print(f"note: the video is silent; {missing_extra('its sound', 'video')}", file=sys.stderr)
     if visemes is None:
         take = replace(take, notes=("the mouth moves with the sound alone: it is no lip-reading",))
     perform(avatar, output, take, options, sound=sound)

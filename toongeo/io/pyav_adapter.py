@@ -5,6 +5,7 @@ import importlib.util
 from pathlib import Path
 from typing import Any
 
+from toongeo._extras import missing_extra
 from toongeo.reading.check_file import check_kind
 
 __all__ = ["has_pyav", "has_sound", "load_pyav"]
@@ -24,7 +25,7 @@ def load_pyav(purpose: str) -> Any:
         If it is not installed; says for what it is needed, and which extra has it.
     """
     if not has_pyav():
-        raise ImportError(f'{purpose} needs PyAV: pip install "toongeo[video]"')
+        raise ImportError(missing_extra(purpose, "video"))
     return importlib.import_module("av")
 
 

@@ -33,7 +33,7 @@ def test_other_files_need_pyav(tmp_path, monkeypatch):
     (tmp_path / "a.mp3").write_bytes(b"ID3 no sound")
     monkeypatch.setattr(pyav_adapter, "has_pyav", lambda: False)
     with pytest.raises(
-        ImportError, match=r'a sound that is no .wav, as a.mp3, needs PyAV: pip install "toongeo\[video\]"'
+        ImportError, match=r'a sound that is no .wav, as a.mp3, needs the extra video: pip install "av>=14"'
     ):
         read_sound(tmp_path / "a.mp3")
     assert not pyav_adapter.has_sound(tmp_path / "a.mp3")

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from toongeo._extras import missing_extra
 from toongeo.app.video.opencv_encoder import OpencvEncoder
 from toongeo.app.video.pyav_encoder import PyavEncoder
 from toongeo.app.video.sound import Sound
@@ -59,7 +60,7 @@ def write_video(
     """
     height, width = check_video(path, size, fps)
     if sound is not None and not has_pyav():
-        raise ImportError('sound in a video needs PyAV: pip install "toongeo[video]"')
+        raise ImportError(missing_extra("sound in a video", "video"))
     try:
         folder = tempfile.TemporaryDirectory(dir=path.parent, prefix=".toongeo-")
     except OSError as error:

@@ -8,6 +8,8 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
+from toongeo._extras import missing_extra
+
 __all__ = ["DaskEngine"]
 
 
@@ -73,5 +75,5 @@ def _modules() -> tuple[Any, Any]:
         import dask
         import distributed
     except ImportError as error:
-        raise ImportError('clusters need dask: pip install "toongeo[cluster]"') from error
+        raise ImportError(missing_extra("a cluster", "cluster")) from error
     return dask, distributed

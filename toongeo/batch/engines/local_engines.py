@@ -6,6 +6,8 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any
 
+from toongeo._extras import missing_extra
+
 __all__ = ["LokyEngine", "SerialEngine", "ThreadEngine"]
 
 _PINNED = {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL", "VECLIB_MAXIMUM", "NUMEXPR")}
@@ -65,7 +67,7 @@ class LokyEngine:
         try:
             from joblib.externals.loky import ProcessPoolExecutor
         except ImportError as error:
-            raise ImportError('processes need joblib: pip install "toongeo[batch]"') from error
+            raise ImportError(missing_extra("a pool of processes", "batch")) from error
         return ProcessPoolExecutor(self.workers, timeout=None, env=_PINNED)
 
     def submit(self, work: Callable[..., Any], *arguments: Any) -> Future[Any]:
