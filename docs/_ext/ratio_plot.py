@@ -14,9 +14,9 @@ def ratio_runs(path: Path) -> tuple[list[str], dict[str, list[float]]]:
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "history.csv"
-    ...     _ = path.write_text("date,commit,case,ratio\\n2026-01-02,abc,fit,0.7\\n2026-01-03,abd,fit,0.8\\n")
+    ...     _ = path.write_text("date,commit,case,ratio\\n2026-01-02,abc,fit,0.7\\n2026-01-03,def,fit,0.8\\n")
     ...     ratio_runs(path)
-    (['2026-01-02 abc', '2026-01-03 abd'], {'fit': [0.7, 0.8]})
+    (['2026-01-02 abc', '2026-01-03 def'], {'fit': [0.7, 0.8]})
     """
     with path.open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
