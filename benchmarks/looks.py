@@ -134,10 +134,8 @@ def main() -> None:
         img = read_image(picture.image)
         rows.append(row(make_avatar(img, read_landmarks(picture.landmarks)), img))
         soot, _, tip, top, flap, levels = rows[-1]
-        print(
-            f"| {picture.name} | {soot:.1f} | {tip:.2f} | {top:.1f} | {flap:.2f} | {levels:.0f} |",
-            flush=True,
-        )
+        told = f"{soot:.1f} | {tip:.2f} | {top:.1f} | {flap:.2f} | {levels:.0f}".replace("nan", "-")
+        print(f"| {picture.name} | {told} |", flush=True)
     soot, _, tip, top, flap, levels = np.array(rows).T
     found_in = {
         "lids sooty (> 15 %)": soot > 15,

@@ -597,7 +597,8 @@ plt.show()
 # `tg.fit_3dmm` is what you have built, with some care around it: all 68 points, those of the jaw sliding on the outline
 # (lesson 4); weights by how well annotators agree on each point; a robust kernel, also for points that are shifted
 # along with their neighbours; a prior on the pitch; a prior that counts more where a caricature misses all its points;
-# a perspective camera, if asked; and a pose that follows the shape by itself, which halves the number of steps.
+# and a perspective camera, if asked. In the place of L-BFGS it uses the Gauss-Newton matrix of section 4 itself: each
+# step leads to the lowest point of the bowl within the bounds, and a few steps are enough.
 
 # %%
 of_library = tg.fit_3dmm(None, landmarks)  # None: no picture is needed, the dots are enough

@@ -14,9 +14,9 @@ def ratio_runs(path: Path) -> tuple[list[str], dict[str, list[float]]]:
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "history.csv"
-    ...     _ = path.write_text("date,commit,case,ratio\\n2026-01-02,abc,fit,0.7\\n2026-01-03,abd,fit,0.8\\n")
+    ...     _ = path.write_text("date,commit,case,ratio\\n2026-01-02,abc,fit,0.7\\n2026-01-03,def,fit,0.8\\n")
     ...     ratio_runs(path)
-    (['2026-01-02 abc', '2026-01-03 abd'], {'fit': [0.7, 0.8]})
+    (['2026-01-02 abc', '2026-01-03 def'], {'fit': [0.7, 0.8]})
     """
     with path.open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
@@ -40,7 +40,7 @@ def draw_ratios(path: Path, runs: list[str], cases: dict[str, list[float]], ink:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    columns = 4
+    columns = 3  # in six inches, as wide as the other plots: letters stay legible on the page
     rows = -(-len(cases) // columns)
     widest = max(max(ratios) / min(ratios) for ratios in cases.values())
     reach = (
@@ -54,15 +54,15 @@ def draw_ratios(path: Path, runs: list[str], cases: dict[str, list[float]], ink:
         "ytick.color": ink,
     }
     with plt.rc_context(style):
-        figure, axes = plt.subplots(rows, columns, figsize=(8, 1.7 * rows + 0.3), squeeze=False, layout="constrained")
+        figure, axes = plt.subplots(rows, columns, figsize=(6, 1.7 * rows), squeeze=False, layout="constrained")
         for axis, (name, ratios) in zip(axes.flat, cases.items(), strict=False):
             middle = (max(ratios) * min(ratios)) ** 0.5
             axis.plot(range(len(ratios)), ratios, "o-", color=line, markersize=4, linewidth=1.5)
             axis.set(yscale="log", ylim=(middle / reach, middle * reach), xlim=(-0.4, len(runs) - 0.6))
             axis.minorticks_off()
             axis.set_yticks([ratios[-1]], [f"{ratios[-1]:.3g} x"], fontsize=8)
-            axis.set_xticks(range(len(runs)), [run.split()[1] for run in runs], fontsize=6, rotation=30)
-            axis.set_title(name, loc="left", fontsize=8)
+            axis.set_xticks(range(len(runs)), [run.split()[1] for run in runs], fontsize=7, rotation=30)
+            axis.set_title(name, loc="left", fontsize=9)
             axis.spines[["top", "right"]].set_visible(False)
         for axis in axes.flat[len(cases) :]:
             axis.axis("off")

@@ -30,7 +30,7 @@ class Chart:
 
     name: str
     heading: str
-    label: str
+    label: str  # a column, or several with " | " between them
     values: tuple[str, ...]
     title: str
     unit: str
@@ -71,7 +71,7 @@ CHARTS = (
     Chart(
         "truth",
         "3D ground truth",
-        "shape",
+        "subjects | shape",
         ("of the mean face",),
         "Error in 3D, as a share of the mean face's",
         "of 1",
@@ -103,17 +103,19 @@ def drawn_charts() -> list[tuple[Chart, list[str], list[list[float]]]]:
 
 def _rows(section: str, chart: Chart) -> list[tuple[str, list[float]]]:
     lines = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines() if line[:1] == "|"]
-    head = next((k for k, cells in enumerate(lines) if {chart.label, *chart.values} <= set(cells)), None)
+    labels = chart.label.split(" | ")
+    head = next((k for k, cells in enumerate(lines) if {*labels, *chart.values} <= set(cells)), None)
     if head is None:
         return []
-    columns = [lines[head].index(name) for name in (chart.label, *chart.values)]
+    named, columns = ([lines[head].index(name) for name in names] for names in (labels, chart.values))
     rows = []
     for cells in lines[head + 2 :]:
-        if len(cells) != len(lines[head]) or set(cells[columns[0]]) <= {"-", ":"} or cells == lines[head]:
+        if len(cells) != len(lines[head]) or set(cells[named[0]]) <= {"-", ":"} or cells == lines[head]:
             break
-        numbers = [re.search(r"-?\d+(?:\.\d+)?", cells[k]) for k in columns[1:]]
-        if all(numbers) and cells[columns[0]] not in chart.without:
-            rows.append((cells[columns[0]].replace("`", ""), [float(number[0]) for number in numbers]))
+        numbers = [re.search(r"-?\d+(?:\.\d+)?", cells[k]) for k in columns]
+        label = " | ".join(cells[k] for k in named)
+        if all(numbers) and label not in chart.without:
+            rows.append((label.replace("`", ""), [float(number[0]) for number in numbers]))
     return rows
 
 
@@ -125,7 +127,8 @@ def result_plots(app=None) -> None:
         for theme in ("light", "dark"):
             _draw(chart, labels, values, theme)
         told = "; ".join(
-            f"{label} {', '.join(f'{v:g}' for v in row)}" for label, row in zip(labels, values, strict=True)
+            f"{label.replace(' | ', ', ')} {', '.join(f'{v:g}' for v in row)}"
+            for label, row in zip(labels, values, strict=True)
         )
         parts += [_shown(chart.name, f"{chart.title}. {told}.", theme) for theme in ("light", "dark")]
     runs, cases = ratio_runs(_HISTORY)
@@ -167,9 +170,9 @@ def _draw(chart: Chart, labels: list[str], values: list[list[float]], theme: str
             places = [row + (k - (len(chart.values) - 1) / 2) * width for row in range(len(labels))]
             bars = axes.barh(places, [row[k] for row in values], width, color=_BARS[theme][k], label=column)
             axes.bar_label(bars, fmt="%g", padding=3, fontsize=8, color=ink)
-        axes.set_yticks(range(len(labels)), labels)
+        axes.set_yticks(range(len(labels)), [label.replace(" | ", ": ") for label in labels])
         axes.invert_yaxis()
-        axes.set_title(chart.title, loc="left", fontsize=11)
+        figure.suptitle(chart.title, x=0.01, ha="left", fontsize=11)  # over the labels too: there is room for it
         axes.set_xlabel(chart.unit)
         axes.margins(x=0.12)
         axes.spines[["top", "right"]].set_visible(False)
