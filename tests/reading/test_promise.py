@@ -12,7 +12,9 @@ import zlib
 import numpy as np
 import pytest
 
-import toongeo
+import toongeo.driving
+import toongeo.io
+import toongeo.model
 from toongeo.reading.check_file import check_file, file_bytes
 from toongeo.reading.npy_array import npy_array
 from toongeo.reading.promise import promise, promised
@@ -196,3 +198,18 @@ def test_no_reader_waits_for_a_pipe(tmp_path):
     for read in readers:
         with pytest.raises(ValueError, match=r"expected .*a\.wav"):
             read(pipe)
+
+
+@pytest.mark.parametrize("wrong", [5, None, b"face.png", 1.5, ["face.png"], "face\0.png"])
+def test_no_writer_takes_what_is_no_name(wrong):
+    points, image = np.zeros((68, 2)), np.zeros((4, 4, 3), np.uint8)
+    writers = [
+        lambda: toongeo.write_landmarks(wrong, points),
+        lambda: toongeo.io.write_image(wrong, image),
+        lambda: toongeo.io.write_mesh_landmarks(wrong, list(range(68))),
+        lambda: toongeo.model.save_model(toongeo.default_model(), wrong),
+        lambda: toongeo.read_image(wrong),
+    ]
+    for write in writers:
+        with pytest.raises(ValueError, match="path: expected the name of a file, got"):
+            write()

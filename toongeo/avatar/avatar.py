@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +21,7 @@ from toongeo.io.shown_page import ShownPage
 from toongeo.model import atlas_coordinates
 from toongeo.model.anatomy.gaze import GAZE_NAMES
 from toongeo.protocols import Camera
+from toongeo.reading.check_file import file_name
 from toongeo.render import (
     FrameRenderer,
     ScaledOrthographicCamera,
@@ -300,7 +300,7 @@ class Avatar(AvatarStages):
         OSError
             If a file cannot be written; nothing half-written is left.
         """
-        save_avatar(Path(path), self, format, options)
+        save_avatar(file_name(path), self, format, options)
 
     def _closed(self, weights: Weights) -> list[Surface]:
         """The surfaces, and what closes the neck."""

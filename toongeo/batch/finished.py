@@ -27,7 +27,7 @@ def is_finished(job: PictureJob, record: dict[str, Any] | None, options: BatchOp
         same = record.get("input") == input_digest(job)
         if record["status"] == "done":
             same &= record.get("output_sha256") == hashlib.sha256(job.output.read_bytes()).hexdigest()
-    except OSError:
+    except (OSError, ValueError):
         return False
     return same and record.get("options") == options.digest() and record.get("version") == __version__
 

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from toongeo.reading.check_file import file_bytes
+
 __all__ = ["STATE", "PictureJob", "input_digest", "picture_jobs"]
 
 STATE = ".toongeo-batch"  # folder of the workers' marks, beside the files
@@ -78,8 +80,10 @@ def input_digest(job: PictureJob) -> str:
     ------
     OSError
         If one cannot be read.
+    ValueError
+        If one is a device or a pipe, or larger than any picture.
     """
     digest = hashlib.sha256()
     for path in (job.picture, job.landmarks):
-        digest.update(b"none" if path is None else hashlib.sha256(path.read_bytes()).digest())
+        digest.update(b"none" if path is None else hashlib.sha256(file_bytes(path)).digest())
     return digest.hexdigest()

@@ -6,7 +6,7 @@ import os
 import stat
 from pathlib import Path
 
-__all__ = ["MOST_MB", "check_file", "check_kind", "file_bytes"]
+__all__ = ["MOST_MB", "check_file", "check_kind", "file_bytes", "file_name"]
 
 MOST_MB = 512  # an hour of OpenFace's table fits, at 30 frames a second; and any head in binary
 
@@ -40,6 +40,28 @@ def check_kind(path: str | os.PathLike[str], argument: str = "path") -> None:
         return
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
         raise ValueError(f"{argument}: expected a file, but {path} is a device or a pipe")
+
+
+def file_name(path: object, argument: str = "path") -> Path:
+    """What a caller gave as the name of a file.
+
+    Raises
+    ------
+    ValueError
+        If it is none.
+
+    Examples
+    --------
+    >>> file_name(5)
+    Traceback (most recent call last):
+        ...
+    ValueError: path: expected the name of a file, got int
+    """
+    if not isinstance(path, str | os.PathLike) or not isinstance(os.fspath(path), str):
+        raise ValueError(f"{argument}: expected the name of a file, got {type(path).__name__}")
+    if "\0" in os.fspath(path):
+        raise ValueError(f"{argument}: expected the name of a file, got one with a zero byte: {path!r}")
+    return Path(path)
 
 
 def file_bytes(path: str | os.PathLike[str], most_mb: int = MOST_MB, argument: str = "path") -> bytes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -11,7 +10,7 @@ from typing import ParamSpec, TypeVar
 
 import numpy as np
 
-from toongeo.reading.check_file import check_kind
+from toongeo.reading.check_file import check_kind, file_name
 
 __all__ = ["promise", "promised"]
 
@@ -98,21 +97,13 @@ def promised(expected: str, argument: str = "path") -> Callable[[Callable[_P, _R
         def guarded(*args: _P.args, **kwargs: _P.kwargs) -> _R:
             path = args[0] if args else kwargs.get(argument)
             if args or argument in kwargs:
-                _check_name(path, argument)
-                check_kind(path, argument)  # type: ignore[arg-type]
+                check_kind(file_name(path, argument), argument)
             with promise(path, expected, argument):
                 return read(*args, **kwargs)
 
         return guarded
 
     return decorate
-
-
-def _check_name(path: object, argument: str) -> None:
-    if not isinstance(path, str | os.PathLike):
-        raise ValueError(f"{argument}: expected the name of a file, got {type(path).__name__}")
-    if "\0" in os.fspath(path):
-        raise ValueError(f"{argument}: expected the name of a file, got one with a zero byte: {path!r}")
 
 
 def _message(path: object, expected: str, argument: str, error: Exception) -> str:

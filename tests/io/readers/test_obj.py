@@ -220,3 +220,11 @@ def test_pipes_and_large_files_are_refused(tmp_path, monkeypatch):
     (tmp_path / "b.obj").write_text("v 0 0 0\n")
     with pytest.raises(ValueError, match=r"path: expected a file of at most 0 MB, but .*b\.obj is larger"):
         read_obj(tmp_path / "b.obj")
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])
+@pytest.mark.parametrize("end", ["\r", "\r\n"])
+def test_encodings_and_ends_of_lines(tmp_path, encoding, end):
+    text = "v 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nf 1 2 3\n"
+    (tmp_path / "a.obj").write_bytes(text.replace("\n", end).encode(encoding))
+    assert read_obj(tmp_path / "a.obj").vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]

@@ -1,12 +1,12 @@
 """Pixels into a picture file."""
 
 import os
-from pathlib import Path
 
 from numpy.typing import ArrayLike
 
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.encode_image import encode_image
+from toongeo.reading.check_file import file_name
 
 __all__ = ["write_image"]
 
@@ -30,4 +30,4 @@ def write_image(path: str | os.PathLike[str], img: ArrayLike, *, quality: int = 
     OSError
         If the path cannot be written; nothing half-written remains.
     """
-    atomic_write({path: encode_image(img, Path(path).suffix, quality=quality)})
+    atomic_write({path: encode_image(img, file_name(path).suffix, quality=quality)})

@@ -4,7 +4,6 @@ import io
 import json
 import os
 from decimal import Decimal
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from toongeo.io.atomic_write import atomic_write
 from toongeo.io.landmark_array import landmark_array
 from toongeo.io.landmarks.frontal_layout import frontal_layout
 from toongeo.io.readers.landmarks.number_words import EXACT
+from toongeo.reading.check_file import file_name
 
 __all__ = ["write_landmarks"]
 
@@ -47,7 +47,7 @@ def write_landmarks(path: str | os.PathLike[str], landmarks: ArrayLike) -> None:
     True
     """
     points = landmark_array(landmarks)
-    suffix = Path(path).suffix.lower()
+    suffix = file_name(path).suffix.lower()
     if suffix == ".npy":
         stream = io.BytesIO()
         np.save(stream, points, allow_pickle=False)

@@ -3,9 +3,9 @@
 import json
 import os
 from collections.abc import Sequence
-from pathlib import Path
 
 from toongeo.io.atomic_write import atomic_write
+from toongeo.reading.check_file import file_name
 
 __all__ = ["write_mesh_landmarks"]
 
@@ -44,7 +44,7 @@ def write_mesh_landmarks(path: str | os.PathLike[str], vertices: Sequence[int | 
     if all(vertex is None for vertex in entries):
         raise ValueError("vertices: expected at least one landmark, but all are missing")
     numbers = [None if vertex is None else int(vertex) for vertex in entries]
-    suffix = Path(path).suffix.lower()
+    suffix = file_name(path).suffix.lower()
     if suffix == ".json":
         text = json.dumps(numbers)
     elif suffix == ".txt":

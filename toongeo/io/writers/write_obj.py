@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from toongeo.io.atomic_write import atomic_write
 from toongeo.io.scene import Scene, SceneMesh
 from toongeo.io.side_files import check_side_files, marked_picture, side_mark
+from toongeo.reading.check_file import file_name
 
 __all__ = ["write_obj"]
 
@@ -38,7 +39,7 @@ def write_obj(path: str | os.PathLike[str], scene: Scene) -> None:
     OSError
         If one of the files cannot be written; then none is.
     """
-    path = Path(path)
+    path = file_name(path)
     if path.suffix.lower() != ".obj":
         raise ValueError(f"path: expected a name that ends in .obj, got {path}")
     files = material_files(path, scene, path.name)

@@ -16,6 +16,7 @@ from toongeo.model.eyeball_template import EyeballTemplate
 from toongeo.model.face_prior import FacePrior
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.skinning import Skinning
+from toongeo.reading.check_file import file_name
 from toongeo.reading.promise import promise
 from toongeo.reading.read_npz import npz_names, read_npz
 
@@ -59,7 +60,7 @@ def save_model(model: MorphableModel, path: str | Path) -> None:
     >>> bool((tg.load_model("head.npz").mean == tg.default_model().mean).all())
     True
     """
-    path = Path(path)
+    path = file_name(path)
     if path.suffix != ".npz":
         raise ValueError(f"path: expected a name that ends in .npz, got {path.name}")
     header = {
