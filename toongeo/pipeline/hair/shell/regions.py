@@ -5,7 +5,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from toongeo.arrays import Mask, Reals
+from toongeo.arrays import Integers, Mask, Reals
+from toongeo.model import MorphableModel
+from toongeo.model.anatomy.neck import neck_rim
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.above_nape import above_nape
 from toongeo.pipeline.hair.plane.depth_maps import ball_offset, depth_maps, silhouette
@@ -91,7 +93,7 @@ def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Reals) -> HeadRas
     """A head whose skin reaches to ``reach`` (n, 3), model frame, in some expression."""
     F, model = face.faces, face.model
     skin = model.region("skin") | model.region("neck")
-    front, back = depth_maps(plane, plane.of(reach), F[skin[F].all(1)])
+    front, back = depth_maps(plane, *_closed(model, plane.of(reach), F[skin[F].all(1)]))
     X, scalp = plane.of(face.vertices), above_nape(model)
     facing = face.normals @ plane.rotation[2]
     rim = scalp & (np.abs(facing) < 0.25)
@@ -105,6 +107,15 @@ def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Reals) -> HeadRas
         rim_z=float(np.median(X[rim if rim.any() else scalp, 2])),
         back_z=float(X[scalp, 2].min()),
     )
+
+
+def _closed(model: MorphableModel, X: Reals, F: Integers) -> tuple[Reals, Integers]:
+    """Vertices and faces, with a fan over the lower end of the neck: there is no room for hair in it."""
+    rim = neck_rim(model)
+    if rim is None:
+        return X, F
+    fan = np.column_stack([np.roll(rim, -1), rim, np.full(len(rim), len(X))])
+    return np.vstack([X, X[rim].mean(axis=0)]), np.vstack([F, fan])
 
 
 def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: HeadRaster) -> Regions:
