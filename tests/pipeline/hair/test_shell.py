@@ -102,17 +102,3 @@ def test_sheets_are_heights_over_the_same_triangles(hair, roomy, mask):
     half = len(hair.faces) // 2
     assert (areas(X[:, :2], hair.faces[:half]) > -1e-4).all()
     assert (areas(X[:, :2], hair.faces[half:]) < 1e-4).all()
-
-
-def test_the_end_of_the_neck_is_closed_so_that_no_hair_goes_into_it(roomy, mask):
-    face = roomy[0]
-    plane = working_plane(face, mask)
-    head = head_raster(face, plane, face.vertices)
-    rim = plane.of(face.vertices[neck_rim(face.model)])
-    middle = rim.mean(axis=0)
-    spokes = middle + np.linspace(0, 0.9, 5)[:, None, None] * (rim - middle)
-    column, row = np.rint(plane.cells(spokes.reshape(-1, 3)[:, :2])).astype(int).T
-    inside = (row >= 0) & (row < plane.shape[0]) & (column >= 0) & (column < plane.shape[1])
-    assert inside.mean() > 0.5
-    # At most as far forward as the fan, but for the slope of it within a cell.
-    assert (head.back[row, column] < spokes.reshape(-1, 3)[:, 2] + 4 * CELL_MM)[inside].all()
