@@ -1,12 +1,10 @@
 import numpy as np
 import pytest
 
-from toongeo.model.anatomy.neck import neck_rim
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane, working_plane
 from toongeo.pipeline.hair.shell.edges import boundary_edges, edges_of, halved
 from toongeo.pipeline.hair.shell.harmonic import smooth_max, solved
 from toongeo.pipeline.hair.shell.planar_mesh import STEP_MM, planar_mesh
-from toongeo.pipeline.hair.shell.regions import head_raster
 
 PLANE = WorkingPlane(np.eye(3), np.eye(2), 1.0, np.zeros(2), np.zeros(2), (120, 120))
 RADIUS = 50.0

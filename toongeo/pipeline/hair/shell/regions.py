@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from toongeo.arrays import Integers, Mask, Reals
-from toongeo.model.anatomy.neck import neck_rim
+from toongeo.arrays import Mask, Reals
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.above_nape import above_nape
 from toongeo.pipeline.hair.plane.depth_maps import ball_offset, depth_maps, silhouette
@@ -38,8 +37,8 @@ class HeadRaster:
         Skin in its farthest reach; -inf and +inf beside the head.
     front_off, back_off
         The same with 2 mm of air all around.
-    crown, neck, end
-        Silhouettes of the scalp above the nape, of skin and neck, and of the lower end of the neck.
+    crown, neck
+        Silhouettes of the scalp above the nape, and of skin and neck.
     rim_z : float
         Depth at which the crown turns from front to back.
     back_z : float
@@ -52,7 +51,6 @@ class HeadRaster:
     back_off: Reals
     crown: Mask
     neck: Mask
-    end: Mask
     rim_z: float
     back_z: float
 
@@ -95,9 +93,8 @@ def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Reals) -> HeadRas
     skin = model.region("skin") | model.region("neck")
     front, back = depth_maps(plane, plane.of(reach), F[skin[F].all(1)])
     X, scalp = plane.of(face.vertices), above_nape(model)
-    rim = neck_rim(model)
     facing = face.normals @ plane.rotation[2]
-    turning = scalp & (np.abs(facing) < 0.25)
+    rim = scalp & (np.abs(facing) < 0.25)
     return HeadRaster(
         front=front,
         back=back,
@@ -105,25 +102,19 @@ def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Reals) -> HeadRas
         back_off=-ball_offset(-back, CLEAR_MM),
         crown=silhouette(plane, X, F[scalp[F].all(1)]),
         neck=silhouette(plane, X, F[skin[F].all(1)]),
-        end=np.zeros_like(front, bool) if rim is None else silhouette(plane, X, _fan(rim)),
-        rim_z=float(np.median(X[turning if turning.any() else scalp, 2])),
+        rim_z=float(np.median(X[rim if rim.any() else scalp, 2])),
         back_z=float(X[scalp, 2].min()),
     )
-
-
-def _fan(rim: Integers) -> Integers:
-    """Triangles that close a hole."""
-    return np.column_stack([np.full(len(rim) - 2, rim[0]), rim[1:-1], rim[2:]])
 
 
 def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: HeadRaster) -> Regions:
     """Front: the hair of the picture. Back: behind the scalp, behind hair beside the head, and between strands."""
     front = raster.hair
-    hanging = _between_strands(face, front, head) & ~head.end  # below the neck there is nothing that hair could hang on
+    hanging = _between_strands(face, front, head)
     covered = front | eroded(head.neck, CELL_MM)  # what is behind these is not seen from the front
     back = head.crown | (dilated(head.crown, _AROUND_MM) & covered)
     back |= (front & ~head.aired) | hanging
-    back = without_holes(closed(back, _GAP_MM) & covered) & ~(head.end & ~front)
+    back = without_holes(closed(back, _GAP_MM) & covered)
     back = large_pieces(back, 0.02)
     whole = front | back
     calm = cv2.GaussianBlur(front.astype(np.float32), (0, 0), _CALM_MM / CELL_MM) > _DRAWN_IN
