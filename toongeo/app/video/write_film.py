@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +15,11 @@ from toongeo.app.video.film_frames import film_frames
 from toongeo.app.video.film_options import FilmOptions
 from toongeo.app.video.sound import Sound
 from toongeo.app.video.write_video import write_video
-from toongeo.avatar.avatar import Avatar
 from toongeo.driving import AvatarPuppet, ScenePuppet, Take
 from toongeo.io import Scene, Video
+
+if TYPE_CHECKING:
+    from toongeo.avatar.avatar import Avatar
 
 __all__ = ["write_film"]
 

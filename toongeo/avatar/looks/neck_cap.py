@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 
-from toongeo.arrays import Integers
 from toongeo.model import MorphableModel, atlas_coordinates
+from toongeo.model.anatomy.neck import neck_rim
 from toongeo.pipeline import Rig
 from toongeo.render import Surface, sample_image, uv_to_px
 
@@ -24,7 +22,7 @@ def neck_cap(model: MorphableModel, rig: Rig, texture: np.ndarray) -> Surface | 
     Surface or None
         None of a model without a region ``neck`` in which there is such a hole.
     """
-    rim = _rim(model)
+    rim = neck_rim(model)
     if rim is None:
         return None
     atlas = atlas_coordinates(model)
@@ -37,22 +35,3 @@ def neck_cap(model: MorphableModel, rig: Rig, texture: np.ndarray) -> Surface | 
     return Surface(
         np.vstack([points, points.mean(axis=0)]), faces.astype(np.int64), colours=np.tile(colour, (len(rim) + 1, 1))
     )
-
-
-@lru_cache(maxsize=4)
-def _rim(model: MorphableModel) -> Integers | None:
-    """Vertices around the hole, in the order of the triangles beside it; None if there is none."""
-    if not model.has("neck"):
-        return None
-    directed = np.vstack([model.faces[:, [0, 1]], model.faces[:, [1, 2]], model.faces[:, [2, 0]]])
-    inside = model.region("neck")[directed].all(axis=1)
-    ways = {(int(a), int(b)) for a, b in directed[inside]}
-    after = {a: b for a, b in ways if (b, a) not in ways}
-    if not after:
-        return None
-    loop = [min(after)]
-    while (following := after.get(loop[-1])) is not None and following != loop[0]:
-        loop.append(following)
-        if len(loop) > len(after):
-            return None
-    return np.array(loop) if len(loop) == len(after) else None

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from toongeo.avatar.avatar import Avatar
 from toongeo.driving.head_turn import head_rotation
 from toongeo.model.anatomy.neck import NECK_MM
-from toongeo.pipeline import Animator
+from toongeo.pipeline.rig.animator import Animator
+
+if TYPE_CHECKING:
+    from toongeo.avatar.avatar import Avatar  # a second of imports, which a process that only draws does without
 
 __all__ = ["AvatarPuppet"]
 

@@ -3,8 +3,11 @@
 Constants were chosen on the seven examples and 15 caricatures (``benchmarks/contacts.py``).
 """
 
+from __future__ import annotations
+
 import time
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,8 +18,10 @@ from toongeo.model.anatomy.gaze import GAZE_NAMES, TURN, gaze_rotation
 from toongeo.model.anatomy.lid_rings import lid_rings, lids_of, opening_height
 from toongeo.model.anatomy.parts import SIDES
 from toongeo.model.anatomy.rims import rim_path
-from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.rig import Rig
+
+if TYPE_CHECKING:
+    from toongeo.pipeline.align.align_face import AlignedFace  # whose imports a process that draws films does without
 
 __all__ = ["Eyes", "LEAST", "MOST", "OFF", "WANDER", "fit_eyes"]
 
