@@ -5,7 +5,7 @@ import skimage.data
 from tests.conftest import CARTOONS
 from toongeo import detect_faces, detect_landmarks
 from toongeo.metrics import landmark_error
-from toongeo.model.ibug68 import MIRROR
+from toongeo.model.ibug68 import MIRROR, PARTS
 from toongeo.pipeline import NoFaceError
 from toongeo.protocols import LandmarkDetection
 
@@ -121,6 +121,20 @@ def test_another_detector_can_take_its_place():
     np.testing.assert_array_equal(found.points, points)
     np.testing.assert_array_equal(found.box, [*points.min(0), *points.max(0)])
     assert found.is_sure
+
+
+@pytest.mark.parametrize("part", ["eye_right", "eye_left", "mouth"])
+def test_a_face_is_sure_by_its_eyes_and_its_mouth(part):
+    """Each of them alone can spoil it; the jaw cannot, nor can brows and nose unless they are worse."""
+    points, confidence = np.random.default_rng(0).uniform(0, 50, (68, 2)), np.full(68, 0.95)
+    confidence[:17], confidence[17:36] = 0.0, 0.5
+    assert LandmarkDetection(points, confidence, 0.5).is_sure
+    assert not LandmarkDetection(points, confidence, 0.49).is_sure
+    confidence[17:36] = 0.4
+    assert not LandmarkDetection(points, confidence, 0.5).is_sure
+    confidence[17:] = 1.0
+    confidence[PARTS[part]] = 0.25 if part != "mouth" else 0.6
+    assert confidence[17:].mean() > 0.8 and not LandmarkDetection(points, confidence, 1.0).is_sure
 
 
 @pytest.mark.parametrize(
