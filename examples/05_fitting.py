@@ -597,7 +597,8 @@ plt.show()
 # `tg.fit_3dmm` is what you have built, with some care around it: all 68 points, those of the jaw sliding on the outline
 # (lesson 4); weights by how well annotators agree on each point; a robust kernel, also for points that are shifted
 # along with their neighbours; a prior on the pitch; a prior that counts more where a caricature misses all its points;
-# a perspective camera, if asked; and a pose that follows the shape by itself, which halves the number of steps.
+# a perspective camera, if asked; and, in the place of L-BFGS, Newton's steps within the bounds: with so few unknowns a
+# solution with the whole matrix is cheap, and a tenth of the steps will do.
 
 # %%
 of_library = tg.fit_3dmm(None, landmarks)  # None: no picture is needed, the dots are enough

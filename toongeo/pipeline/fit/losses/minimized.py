@@ -25,9 +25,15 @@ def minimized(
     nlopt's optimizers know the unknowns one by one, and get the loss with its pose decoupled, or with unknowns scaled
     where there are several pictures.
     """
-    limits = {"max_evaluations": solver.max_evaluations, "max_seconds": solver.max_seconds}
     if algorithm == GAUSS_NEWTON:
-        return gauss_newton(loss, start, bounds=bounds, tolerance=solver.tolerance, **limits)
+        return gauss_newton(
+            loss,
+            start,
+            bounds=bounds,
+            tolerance=solver.tolerance,
+            max_evaluations=solver.max_evaluations,
+            max_seconds=solver.max_seconds,
+        )
     decoupled = decoupled_pose(loss, start) if isinstance(loss, TotalLoss) else None
     minimum = nlopt_minimize(
         loss if decoupled is None else decoupled,
@@ -36,6 +42,7 @@ def minimized(
         scale=1 / np.sqrt(loss.curvature(start) if decoupled is None else decoupled.curvature),
         algorithm=algorithm,
         tolerance=solver.tolerance,
-        **limits,
+        max_evaluations=solver.max_evaluations,
+        max_seconds=solver.max_seconds,
     )
     return minimum if decoupled is None else replace(minimum, x=decoupled.x(minimum.x))
