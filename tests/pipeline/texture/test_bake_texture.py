@@ -9,7 +9,7 @@ from toongeo.pipeline import bake_texture
 from toongeo.pipeline.rig.rig import Rig
 from toongeo.pipeline.texture.bake_texture import _atlas_fragments
 from toongeo.pipeline.texture.face_picture import EYE_LEFT, MAX_SIDE, OPENINGS, face_picture, opening_mask
-from toongeo.render import ScaledOrthographicCamera, sample_image, uv_to_px
+from toongeo.render import ScaledOrthographicCamera, interpolate, rasterize, sample_image, uv_to_px
 
 
 @pytest.fixture(scope="module")
@@ -54,6 +54,25 @@ def test_a_mirrored_picture_gives_a_mirrored_texture(face, img):
     front = fragments.mask & face.region("face")[face.faces].all(1)[fragments.face_ids]
     difference = np.abs(both[0].astype(int) - both[1][:, ::-1])[front & front[:, ::-1]]
     assert difference.mean() < 3
+
+
+def test_a_dark_outline_of_the_cheeks_is_not_drawn_out_over_the_sides(face):
+    """Skin that is seen at a slant takes the colour of what is seen well; the picture is dark where it turns away."""
+    model, camera = face.model, face.camera
+    shape = 800, 800
+    fragments = rasterize(
+        np.column_stack([camera.project(face.vertices), camera.depth(face.vertices)]), face.faces, *shape
+    )
+    picture = face_picture(np.full((*shape, 3), 200, np.uint8), face)
+    cosines = interpolate(fragments, face.faces, picture.cosines)
+    img = np.where((fragments.mask & (cosines > 0.5))[..., None], np.uint8([220, 170, 140]), np.uint8([110, 60, 40]))
+    corner = np.zeros(len(face.vertices), int)
+    corner[model.faces.ravel()] = model.uv_faces.ravel()
+    texels = sample_image(bake_texture(img, face, size=512), uv_to_px(model.uv[corner], 512, 512))
+    cheeks = model.region("cheek_left") | model.region("cheek_right")
+    slant = cheeks & (picture.cosines > 0.1) & (picture.cosines < 0.35)
+    assert slant.sum() > 50
+    assert np.median(texels[slant, 0]) > 190
 
 
 def test_the_skin_of_the_texture_is_that_of_the_picture(face, img):

@@ -20,7 +20,7 @@ __all__ = ["unseen_colours"]
 
 _FADE_RINGS = 24  # edges over which unseen skin fades from its nearest seen colour to the mean skin colour
 _INNER_RINGS = 3  # edges over which the inner side of lids and lips takes on the model's colour
-_FRONTAL = 0.45  # cosine to the viewer from which a vertex is seen well
+_FRONTAL = 0.65  # cosine to the viewer from which a vertex is seen well, as in bake_texture
 _GRAZING = 0.15  # the same for hair, of which only the middle colour is taken: short hair is seen from the side
 _SMOOTHING = 24  # passes that take the streaks out of the breadth-first diffusion
 _SOFT = 12  # passes that soften the hairline
