@@ -10,9 +10,12 @@ from toongeo.geometry import catmull_clark
 from toongeo.geometry.one_thread import one_thread
 from toongeo.model.data_path import data_path
 from toongeo.model.eyeball_template import EyeballTemplate
+from toongeo.model.face_prior import FacePrior
 from toongeo.model.morphable_model import MorphableModel
 
 __all__ = ["MoreModes", "artist_model", "recombined"]
+
+_AT_ONCE = 4  # modes that are turned from columns into rows while they are in the cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +36,10 @@ class MoreModes:
     eye_radii: np.ndarray
 
 
-def artist_model(axes: np.ndarray | None = None, more: MoreModes | None = None) -> MorphableModel:
-    """The default template without its prior: an artist's choice of 80 identity modes, and of how far faces differ.
+def artist_model(
+    axes: np.ndarray | None = None, more: MoreModes | None = None, prior: FacePrior | None = None
+) -> MorphableModel:
+    """The template as an artist made it: her choice of 80 identity modes, and of how far faces differ.
 
     Its modes are stored on a control cage and refined by one Catmull-Clark step when it is loaded; since the step is
     linear, the refined modes of the cage are the modes of the refined mesh.
@@ -45,6 +50,7 @@ def artist_model(axes: np.ndarray | None = None, more: MoreModes | None = None) 
         Coefficients of other identity modes in those of the artist; these take their place.
     more : MoreModes, optional
         Modes that follow them.
+    prior : FacePrior, optional
 
     Examples
     --------
@@ -84,6 +90,7 @@ def artist_model(axes: np.ndarray | None = None, more: MoreModes | None = None) 
         uv=uv,
         uv_faces=_triangles(uv_quads, z["diagonal"]),
         eyes=(_eye(z, 0), _eye(z, 1)),
+        prior=prior,
     )
 
 
@@ -105,9 +112,12 @@ def recombined(modes: np.ndarray, axes: np.ndarray) -> np.ndarray:
 
 def _refined_modes(S: sp.csr_array, modes: np.ndarray) -> np.ndarray:
     """Modes (k, n0, 3) of the cage -> modes (k, n1, 3) float32 of the refined mesh."""
-    columns = modes.transpose(1, 0, 2).reshape(modes.shape[1], -1).astype(np.float32)
-    refined = (S.astype(np.float32) @ columns).reshape(S.shape[0], len(modes), 3)
-    return np.ascontiguousarray(refined.transpose(1, 0, 2))
+    S, refined = S.astype(np.float32), np.empty((len(modes), S.shape[0], 3), np.float32)
+    for first in range(0, len(modes), _AT_ONCE):
+        some = modes[first : first + _AT_ONCE]
+        columns = some.transpose(1, 0, 2).reshape(modes.shape[1], -1).astype(np.float32)
+        refined[first : first + _AT_ONCE] = (S @ columns).reshape(S.shape[0], len(some), 3).transpose(1, 0, 2)
+    return refined
 
 
 def _refined_uv(uv: np.ndarray, quads: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,5 @@
 """The head that ships with the library."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -44,4 +43,4 @@ def default_model() -> MorphableModel:
         mean=np.append(z["mean"], z["mean_mode_share"]).astype(np.float64),
         **{name: z[name].astype(np.float64) for name in ("landmark_offsets", "landmark_covariance", "scan_offsets")},
     )
-    return replace(artist_model(z["axes"].astype(np.float64), more), prior=prior)
+    return artist_model(z["axes"].astype(np.float64), more, prior)
