@@ -128,7 +128,7 @@ def main() -> int:
         }
         refused = {name for name, record in records.items() if record["status"] == "refused"}
         checks = {
-            "every good picture has its GLB": set(rough) == good,
+            "every good picture has its GLB, once": set(rough) == good,
             "every corrupt picture has its line": refused == corrupt and len(records) == options.pictures,
             "equal to a serial run byte for byte": rough == serial,
         }
@@ -136,9 +136,12 @@ def main() -> int:
             more = ["--backend", "dask", "--workers", "2"]
             subprocess.run(command(base / "in", base / "dask", *more), cwd=ROOT, check=True)
             checks["equal to dask byte for byte"] = digests(base / "dask") == serial
-    print(f"{options.pictures} pictures, {len(corrupt)} of them corrupt, a worker killed, two interruptions")
+    print(
+        f"| {options.pictures} pictures, {len(corrupt)} of them corrupt, a worker killed, two interruptions | holds |"
+    )
+    print("|---|---|")
     for what, holds in checks.items():
-        print(f"{'yes' if holds else 'NO '} {what}")
+        print(f"| {what} | {'yes' if holds else 'NO'} |")
     return 0 if all(checks.values()) else 1
 
 

@@ -83,15 +83,15 @@ def main() -> None:
     landmarks = [read_landmarks(picture.landmarks) for picture in found]
     space = face_space().space
     model = default_model()
-    print(f"space of 98 shapes: {seconds(lambda: _face_space.__wrapped__(model)):.2f} s")
+    print("| step | CPU s |\n|---|---|")
+    print(f"| space of 98 shapes | {seconds(lambda: _face_space.__wrapped__(model)):.2f} |")
     first = fit_caricature(None, landmarks[0])
     P, options = first.vertices[first.space.vertices], CaricatureOptions()
     used = seconds(lambda: space.fit(P, ridge=options.ridge, iterations=options.steps))
     steps = len(space.fit(P, ridge=options.ridge).energies) - 1
     whole = seconds(lambda: space.fit(P, ridge=options.ridge))
-    print(
-        f"w-step, 98 shapes: {used:.2f} s as used ({options.steps} steps), {whole:.2f} s to convergence ({steps} steps)"
-    )
+    print(f"| w-step as used, {options.steps} steps | {used:.2f} |")
+    print(f"| w-step to convergence, {steps} steps | {whole:.2f} |", flush=True)
     rows = []
     for q in landmarks:
         ordinary = fit_3dmm(None, q)
@@ -101,7 +101,8 @@ def main() -> None:
         quick = CaricatureOptions(tuck=False)
         warm = seconds(lambda: fit_caricature(None, opened, start=face, iterations=1, options=quick))  # noqa: B023
         rows.append([aligned, cold, warm])
-    print("align_face {:.2f} s, whole fit {:.2f} s, warm start {:.2f} s (medians)".format(*np.median(rows, axis=0)))
+    for name, middle in zip(("`align_face`", "whole fit", "warm start"), np.median(rows, axis=0), strict=True):
+        print(f"| {name}, median | {middle:.2f} |", flush=True)
     print(roles("caricature", [picture.name for picture in found]), "\n")
     print(f"largest memory before the rival: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024:.0f} MB")
     rival()

@@ -134,7 +134,10 @@ def landmark_errors(seed: int, amount: float) -> dict[str, float]:
 
 def landmark_table(subjects: int) -> None:
     print(f"Landmarks of 10 expressions from one of 4, {subjects} subjects, mean error in px of 512\n")
-    print("| exaggeration | not moved | copied from the fitted face | F- | closer | copied from the true subject |")
+    print(
+        "| exaggeration | not moved | copied from the fitted face, scaled | F- "
+        "| closer | copied from the true subject |"
+    )
     print("|---|---|---|---|---|---|")
     for amount in (0.5, 1.0, 1.5):
         rows = [landmark_errors(1000 + seed, amount) for seed in range(subjects)]
@@ -151,8 +154,9 @@ def normal_table() -> None:
     best = optimize(NORMAL, NORMAL, model.mean[AT], F)[ACTING]
     off = np.linalg.norm(best - wanted, axis=(1, 2)) / np.linalg.norm(wanted, axis=(1, 2))
     peak = np.linalg.norm(best, axis=2).max(axis=1) / np.linalg.norm(wanted, axis=2).max(axis=1)
-    print(f"\nNormal face: |D* - M D| / |M D| {100 * off.mean():.1f} % (worst {100 * off.max():.1f} %), ", end="")
-    print(f"peak motion kept {100 * peak.mean():.1f} % (least {100 * peak.min():.1f} %)")
+    print("\n| a normal face as input | mean | worst |\n|---|---|---|")
+    print(f"| D* off M D, % | {100 * off.mean():.1f} | {100 * off.max():.1f} |")
+    print(f"| peak motion kept, % | {100 * peak.mean():.1f} | {100 * peak.min():.1f} |\n")
     ours, rival = [], []
     for _ in range(2):
         started = time.process_time()
@@ -232,11 +236,11 @@ def picture_table(files: list[Path], sheets: Path | None) -> None:
             write_image(sheets / f"{path.stem}_expressions.png", np.vstack([np.hstack(pair) for pair in pairs]))
     base = np.mean(rows["not optimized"], axis=0)[0]
     print(f"\n{len(files)} drawings: correlation matrix against the normal face's, and what moves that should not\n")
-    print("| method | rms of cosines | of the unoptimized | blink outside the eye, % | outside the mask, % |")
-    print("|---|---|---|---|---|")
+    print("| method | deviation of the cosines, % of the unoptimized ", end="")
+    print("| blink outside the eye, % of the face | outside / inside the mask, % |\n|---|---|---|---|")
     for name, values in rows.items():
         cosines, blink, outside, _ = np.mean(values, axis=0)
-        print(f"| {name} | {cosines:.3f} | {100 * cosines / base:.0f} % | {blink:.2f} | {outside:.1f} |")
+        print(f"| {name} | {100 * cosines / base:.0f} | {blink:.2f} | {outside:.1f} |")
     print(roles("caricature_expressions", [path.stem for path in files]))
     print(f"\nshape stage: {np.median([row[3] for row in rows['caricature_rig']]):.1f} s (median)")
 

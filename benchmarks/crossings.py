@@ -29,7 +29,7 @@ WORST = 4
 
 def main() -> None:
     found = pictures(sys.argv[1:])
-    print(f"{'':<26} rest   all  worst")
+    print("| picture | crossing triangles at rest | in all expressions | worst |\n|---|---|---|---|")
     for picture in found:
         img, landmarks = read_image(picture.image), read_landmarks(picture.landmarks)
         fit = fit_3dmm(img, landmarks)
@@ -46,7 +46,7 @@ def main() -> None:
         at_rest = counts.pop("rest")
         worst = sorted(counts, key=lambda name: -counts[name])[:WORST]
         told = ", ".join(f"{name} {counts[name]}" for name in worst)
-        print(f"{picture.name:<26} {at_rest:4d} {sum(counts.values()):5d}  {told}", flush=True)
+        print(f"| {picture.name} | {at_rest} | {sum(counts.values())} | {told} |", flush=True)
     print(roles("crossings", [picture.name for picture in found]))
 
 

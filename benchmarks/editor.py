@@ -45,7 +45,8 @@ def main() -> None:
             )
     print(roles("editor", [picture.name for picture in pictures(folders)]))
     times = [ms for k in range(len(PictureList(FOLDER))) for ms in answers(k)]
-    print(f"\nA fit with its answer as JSON: median {np.median(times):.1f} CPU ms, longest {max(times):.1f}")
+    print("\n| CPU ms | median | longest |\n|---|---|---|")
+    print(f"| a fit with its answer as JSON | {np.median(times):.1f} | {max(times):.1f} |")
 
 
 def left(way: Callable[[np.ndarray], np.ndarray], points: np.ndarray, count: int) -> float:

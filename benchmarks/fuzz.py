@@ -132,11 +132,13 @@ def run(inputs: int, meshes: int, seconds: float, only: str | None, first: int, 
             tried[name] += 1
             if why := mesh_fault(verb, number):
                 faults.append((name, number, why))
+    print("| what | inputs | promises broken |\n|---|---|---|")
     for name, count in tried.items():
-        print(f"{count:8} {name}")
+        print(f"| {name} | {count:,} | {sum(fault[0] == name for fault in faults)} |")
+    print(f"| all | {sum(tried.values()):,} | {len(faults)} |")
+    print(f"\nMemory at most {_peak_mb()} MB.")
     for name, number, why in faults[:200]:
         print(f"FAULT {name} {number}: {why}")
-    print(f"{sum(tried.values())} inputs, {len(faults)} faults, at most {_peak_mb()} MB")
     return len(faults) + (_peak_mb() > MOST_MB)
 
 

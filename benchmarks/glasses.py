@@ -17,7 +17,7 @@ import argparse
 
 import cv2
 import numpy as np
-from pictures import pictures, roles
+from pictures import CHOSEN_ON, pictures, roles
 
 from toongeo import read_image, read_landmarks
 from toongeo.pipeline.texture.find_glasses import find_glasses
@@ -64,9 +64,9 @@ def on_renders(count: int) -> None:
         row = table[bool(share)]
         row[0] += find_glasses(render.picture, render.landmarks) is not None
         row[1] += 1
-    print(
-        f"renders: found on {table[True][0]} of {table[True][1]} with glasses, {table[False][0]} of {table[False][1]}"
-    )
+    print("\n| renders | found |\n|---|---|")
+    for wears, name in ((True, "with glasses"), (False, "without")):
+        print(f"| {table[wears][1]} {name} | {table[wears][0]} |")
 
 
 def main() -> None:
@@ -74,16 +74,23 @@ def main() -> None:
     parser.add_argument("folders", nargs="*")
     parser.add_argument("--renders", type=int, default=0)
     options = parser.parse_args()
-    found, counts = pictures(options.folders), np.zeros(3, int)
-    print(f"{'':<26} as it is  thin   thick   brown   dark")
+    found = pictures(options.folders)
+    counts = {chosen: np.zeros(4, int) for chosen in (True, False)}
+    print("| picture | as it is | thin | thick | brown | dark |\n|---|---|---|---|---|---|")
     for picture in found:
         img, landmarks = read_image(picture.image), read_landmarks(picture.landmarks)
         kinds = [kind(worn(img, landmarks, *frame), landmarks) for frame in FRAMES]
         kinds.append(kind(worn(img, landmarks, 0.1, (25, 22, 22), 2.0, dark=True), landmarks))
         own = kind(img, landmarks)
-        print(f"{picture.name:<26} {own:8}  " + " ".join(f"{name:7}" for name in kinds), flush=True)
-        counts += own != "-", sum(name != "-" for name in kinds[:3]), kinds[3] == "dark"
-    print(f"of {len(found)}: {counts[0]} as they are; {counts[1]} of {3 * len(found)} frames, {counts[2]} dark glasses")
+        print(f"| {picture.name} | " + " | ".join([own, *kinds]) + " |", flush=True)
+        half = picture.name in CHOSEN_ON["glasses"]
+        counts[half] += 1, own != "-", sum(name != "-" for name in kinds[:3]), kinds[3] == "dark"
+    print(
+        "\n| glasses are found on | of pictures that constants were chosen on | of those only looked at |\n"
+        "|---|---|---|"
+    )
+    for name, row, of in (("as they are", 1, 1), ("clear frames", 2, 3), ("dark glasses", 3, 1)):
+        print(f"| {name} | " + " | ".join(f"{count[row]} of {of * count[0]}" for count in counts.values()) + " |")
     if options.renders:
         on_renders(options.renders)
     print(roles("glasses", [picture.name for picture in found]))

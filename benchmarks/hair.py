@@ -135,7 +135,8 @@ def measured(picture: Path, masks: Path, found: bool) -> str:
     painted = tg.make_avatar(img, landmarks, hair=False, texture_size=64)
     avatar = tg.make_avatar(img, landmarks, hair_mask=None if found else mask, texture_size=64)
     if avatar.hair is None:
-        return f"{stem:<26}no shell: {'; '.join(w for w in avatar.report.warnings if 'hair' in w)}"
+        why = "; ".join(w for w in avatar.report.warnings if "hair" in w)
+        return f"| {stem} | no shell: {why} " + "| " * 11 + "|"
     hair, own = avatar.hair, avatar.parse.hair.mask
     factor = 2.0 if max(img.shape) < 900 else 1.0
     shape = (int(img.shape[0] * factor), int(img.shape[1] * factor))
@@ -157,20 +158,19 @@ def measured(picture: Path, masks: Path, found: bool) -> str:
         seconds.append(time.process_time() - started)
     share, name, near = before(avatar, hair, own)
     return (
-        f"{stem:<26}{iou(visible, large[0]):6.3f}{iou(visible, large[1]):7.3f}{silhouettes[0]:8.3f} ->"
-        f"{silhouettes[1]:6.3f}{through(avatar, hair):9.2f}{share:8.3f} {name:<18}{near:6.3f}{moved:6.2f}"
-        f"{open_edges(hair.faces):6d}{len(self_intersections(hair.vertices, hair.faces)):9d}{len(hair.faces):10d}"
-        f"{min(seconds):9.2f}"
+        f"| {stem} | {iou(visible, large[0]):.3f} | {iou(visible, large[1]):.3f} "
+        f"| {silhouettes[0]:.3f} -> {silhouettes[1]:.3f} | {through(avatar, hair):.2f} | {share:.3f} | {name} "
+        f"| {near:.3f} | {moved:.2f} | {open_edges(hair.faces)} | {len(self_intersections(hair.vertices, hair.faces))} "
+        f"| {len(hair.faces)} | {min(seconds):.2f} |"
     )
 
 
 def main() -> None:
     arguments = [a for a in sys.argv[1:] if not a.startswith("--")]
     masks, pictures = Path(arguments[0]), [Path(name) for name in arguments[1:]]
-    print(
-        f"{'picture':<26}{'IoU':>6}{'own':>7}{'silhouette':>17}{'through %':>9}{'before %':>8} {'in':<18}{'near':>6}"
-        f"{'moved':>6}{'open':>6}{'crossing':>9}{'triangles':>10}{'seconds':>9}"
-    )
+    print("| picture | IoU with mask by hand | with its own mask | silhouette of the head, painted -> shell ", end="")
+    print("| skin through, % | head before hair, % | worst in | near it, % | landmarks moved, mm ", end="")
+    print("| open edges | crossing | triangles | CPU s |\n" + "|---" * 13 + "|")
     for picture in pictures:
         print(measured(picture, masks, "--found" in sys.argv), flush=True)
 

@@ -93,7 +93,8 @@ def outside(model: MorphableModel, name: str, V: np.ndarray) -> int:
     return int((~enclosed(model, V, V[held][::EVERY])).sum())
 
 
-def row(face: AlignedFace, rig: Rig) -> list[str]:
+def measured(face: AlignedFace, rig: Rig) -> tuple[list[float], list[str], list[str], int]:
+    """The seal, what crosses, what intersects above the allowance, and teeth outside."""
     model = face.model
     neutral = intersecting(model, rig.neutral)
     order = np.minimum(heights(model, face.vertices), 0)
@@ -105,8 +106,19 @@ def row(face: AlignedFace, rig: Rig) -> list[str]:
             teeth += outside(model, name, V)
         more = intersecting(model, V) - neutral - own()[name] - ALLOWED
         excess += [f"{name} {more:.2f}"] if more > 0 else []
-    gaps = " / ".join(f"{gap:.2f}" for gap in seal(model, V))
-    return [gaps, ", ".join(crossings) or "-", ", ".join(excess) or "-", str(teeth)]
+    return list(seal(model, V)), crossings, excess, teeth
+
+
+def row(gaps: list[float], crossings: list[str], excess: list[str], teeth: int) -> str:
+    told = " / ".join(f"{gap:.2f}" for gap in gaps)
+    return " | ".join([told, ", ".join(crossings) or "-", ", ".join(excess) or "-", str(teeth)])
+
+
+def summary(title: str, rows: list[tuple[list[float], list[str], list[str], int]]) -> str:
+    gaps = np.array([gaps for gaps, *_ in rows])
+    counts = (sum(bool(row[k]) for row in rows) for k in (1, 2, 3))
+    told = " | ".join(f"{count} of {len(rows)}" for count in counts)
+    return f"| {title} | {gaps[:, 0].max():.2f} | {gaps[:, 1].max():.2f} | {told} |"
 
 
 def seconds(face: AlignedFace, rig: Rig) -> float:
@@ -122,13 +134,20 @@ def main() -> None:
     found = pictures(sys.argv[1:])
     print("| picture | rig | seal mean / max / front, % | crossings, % | intersecting above allowance | teeth | s |")
     print("|---|---|---|---|---|---|---|")
+    ways: dict[str, list[tuple[list[float], list[str], list[str], int]]] = {"transferred": [], "fitted": []}
     for picture in found:
         landmarks = read_landmarks(picture.landmarks)
         face = neutral_face(align_face(fit_3dmm(None, landmarks), landmarks))
         plain = build_rig(face)
         rig = fit_mouth(face, plain)
-        print(f"| {picture.name} | transferred |", " | ".join(row(face, plain)), "| |")
-        print("| | fitted |", " | ".join(row(face, rig)), f"| {seconds(face, rig):.2f} |", flush=True)
+        ways["transferred"].append(measured(face, plain))
+        ways["fitted"].append(measured(face, rig))
+        print(f"| {picture.name} | transferred |", row(*ways["transferred"][-1]), "| |")
+        print("| | fitted |", row(*ways["fitted"][-1]), f"| {seconds(face, rig):.2f} |", flush=True)
+    print("\n| rig | seal, worst mean % | worst of all % | pictures with lips that cross ", end="")
+    print("| with intersections above the allowance | with teeth outside |\n|---|---|---|---|---|---|")
+    for title, rows in ways.items():
+        print(summary(title, rows))
     print(roles("lips", [picture.name for picture in found]))
 
 

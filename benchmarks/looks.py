@@ -20,7 +20,7 @@ import sys
 
 import cv2
 import numpy as np
-from pictures import pictures, roles
+from pictures import CHOSEN_ON, pictures, roles
 
 from toongeo import make_avatar, read_image, read_landmarks
 from toongeo.avatar import Avatar
@@ -129,21 +129,29 @@ def row(avatar: Avatar, img: np.ndarray) -> list[float]:
 
 def main() -> None:
     found, rows = pictures(sys.argv[1:]), []
-    print(f"{'':<26} soot %  spread   nose  skull %   ears  forehead")
+    print("| picture | soot % | nose | skull % | ears | forehead |\n|---|---|---|---|---|---|")
     for picture in found:
         img = read_image(picture.image)
         rows.append(row(make_avatar(img, read_landmarks(picture.landmarks)), img))
-        soot, spread, tip, top, flap, levels = rows[-1]
+        soot, _, tip, top, flap, levels = rows[-1]
         print(
-            f"{picture.name:<26} {soot:6.1f} {spread:7.1f} {tip:6.2f} {top:8.1f} {flap:6.2f} {levels:9.1f}", flush=True
+            f"| {picture.name} | {soot:.1f} | {tip:.2f} | {top:.1f} | {flap:.2f} | {levels:.0f} |",
+            flush=True,
         )
     soot, _, tip, top, flap, levels = np.array(rows).T
-    found_in = [(soot > 15), (tip > 1.5), (tip > 2.2), (top > 2), (flap > 1.5), (levels > 25)]
-    counts = [int(faces.sum()) for faces in found_in]
-    print(
-        f"of {len(rows)}: sooty lids (> 15 %) {counts[0]}, noses > 1.5 {counts[1]}, > 2.2 {counts[2]},"
-        f" skulls > 2 % {counts[3]}, ears > 1.5 {counts[4]}, foreheads > 25 levels {counts[5]}"
-    )
+    found_in = {
+        "lids sooty (> 15 %)": soot > 15,
+        "noses > 1.5": tip > 1.5,
+        "noses > 2.2": tip > 2.2,
+        "skulls > 2 %": top > 2,
+        "ears > 1.5": flap > 1.5,
+        "foreheads > 25 levels": levels > 25,
+    }
+    chosen = np.array([picture.name in CHOSEN_ON["looks"] for picture in found])
+    print("\n| faces with | of pictures that constants were chosen on | of those only looked at |\n|---|---|---|")
+    for name, faces in found_in.items():
+        counts = " | ".join(f"{int(faces[half].sum())} of {half.sum()}" for half in (chosen, ~chosen))
+        print(f"| {name} | {counts} |")
     print(roles("looks", [picture.name for picture in found]))
 
 

@@ -185,13 +185,14 @@ def report(log: Path) -> str:
     if not rows:
         return "no faults yet"
     dead = [row["status"] != "survived" for row in rows]
-    lines = [f"{sum(dead)} of {len(rows)} killed: {100 * sum(dead) / len(rows):.1f} %"]
+    lines = [f"{sum(dead)} of {len(rows)} caught: {100 * sum(dead) / len(rows):.1f} %"]
     lines.append(f"{sum(row['seconds'] for row in rows) / len(rows):.1f} s CPU a fault")
     for name in ("folder", "kind"):
         keys = [row["kind"] if name == "kind" else "/".join(row["path"].split("/")[:3]) for row in rows]
         all_of, dead_of = Counter(keys), Counter(key for key, was in zip(keys, dead, strict=True) if was)
-        lines += [f"  {key}: {dead_of[key]} of {all_of[key]}" for key in sorted(all_of)]
-    lines.append("survivors:")
+        lines += ["", f"| {name} | caught | of |", "|---|---|---|"]
+        lines += [f"| {key} | {dead_of[key]} | {all_of[key]} |" for key in sorted(all_of)]
+    lines += ["", "survivors:"]
     lines += [
         f"  {row['path']}:{row['line']} {row['kind']}: {row['before']!r} -> {row['after']!r}"
         for row in sorted(rows, key=lambda row: (row["path"], row["line"]))

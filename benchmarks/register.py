@@ -111,14 +111,14 @@ def registrations(template: MorphableModel, head: MorphableModel, with_amberg: b
     fitted = ~hidden_vertices(template)
     vertices = template.landmarks[INNER]
     ways = {
-        "similarity of the landmarks": lambda: aligned,
-        "closest points": lambda: closest_points(aligned, head),
+        "similarity of landmarks": lambda: aligned,
+        "closest points after ICP (rival)": lambda: closest_points(aligned, head),
         "nonrigid_register": lambda: nonrigid_register(
             template.mean, template.faces, target, head.faces, vertices, points[INNER], fitted=fitted
         ).vertices[used],
-        "register_face (with rims)": lambda: register_face(target, head.faces, points, template).registration.vertices[
-            used
-        ],
+        "with the rims of eyes and lips (`rig_mesh`)": lambda: register_face(
+            target, head.faces, points, template
+        ).registration.vertices[used],
     }
     if with_amberg:
         ways["trimesh nricp_amberg (face only)"] = lambda: amberg(aligned, F, landmarks, head)
@@ -143,7 +143,7 @@ def main() -> None:
     registrations(template, head, options.amberg)
     started = time.process_time()
     returned = round_trip(template, head)
-    print(f"\nthere and back: {time.process_time() - started:.1f} s CPU")
+    print(f"\nThere and back: {time.process_time() - started:.1f} s CPU\n")
     errors = relative_errors(template, returned)
     print("| expression | error, % of its mean motion |")
     print("|---|---|")

@@ -64,6 +64,7 @@ def main() -> None:
     print("| picture | kind | before % | nearest % | arc % | fall % |")
     print("|---|---|---|---|---|---|")
     names: list[str] = []
+    summary = []
     for folder in [Path(name) for name in sys.argv[1:]] or [FOLDER]:
         falls = {}
         for picture in pictures([folder]):
@@ -81,8 +82,9 @@ def main() -> None:
             print_row(picture.name, "both", total)
             falls[picture.name] = 100 * (1 - total[2] / total[0])
         found = list(falls.values())
-        print(f"| {folder.name}: mean, least | both | | | | {np.mean(found):.0f}, {np.min(found):.0f} |")
+        summary.append(f"| {len(found)} of {folder.name} | {np.mean(found):.0f} | {np.min(found):.0f} |")
         names += falls
+    print("\n| pictures | fall of the error %, mean | least |\n|---|---|---|", *summary, sep="\n")
     print(roles("snapping", names))
 
 

@@ -135,7 +135,7 @@ print(f"median error of the least sure sixth {doubtful_miss:.1%}, of the surest 
 #
 # Where the detector is not sure, a person looks. On the command line `toongeo landmarks face.png` opens a page on your
 # machine: drag points, whole parts, softly or on both sides; the fitted face stands beside them, the doubtful ones come
-# first. In a notebook the same editor is a widget (`pip install "toongeo[notebook]"`):
+# first. In a notebook the same editor is a widget (`pip install ".[notebook]"`):
 #
 # ```python
 # editor = tg.LandmarkEditor(img, found.points)

@@ -120,7 +120,7 @@ camera = ScaledOrthographicCamera.look(15, 0, size=400, centre=(0, -20, 0), exte
 
 
 def lamp(ambient, right, above, front):
-    """A white light (9, 3): the same from everywhere, and more from some sides."""
+    """A white light (9, 3): the same from everywhere, and more from some sides, as the viewer sees them."""
     light = np.zeros((9, 3))
     light[[0, 3, 1, 2]] = np.array([ambient, right, above, front])[:, None]
     return light
@@ -147,9 +147,11 @@ show([picture[::2, ::2] for picture in pictures.values()], pictures)
 #
 # $$ \frac{\rho_i}{\pi} \sum_{lm} A_l\, Y_{lm}(n_i)\; L_{lm} = I_i . $$
 #
-# Which vertices are seen? Those of the face that are turned to the camera, and that nothing hides. For the second, the
-# mesh is *rasterised*: for each pixel, which triangle is nearest, and at which depth. A vertex that lies behind what
-# its pixel shows is hidden.
+# Which vertices are seen? Those of the face that are turned to the camera, and that nothing hides. The third row of the
+# camera's rotation is the direction towards the viewer: its product with a normal says how far the skin is turned away.
+# For what hides, the mesh is *rasterised*: for each pixel, which triangle is nearest, and at which depth. The `depth`
+# of this camera, in mm, grows *towards* the viewer. A vertex more than a millimetre behind what its pixel shows is
+# hidden.
 
 
 # %%
@@ -238,9 +240,10 @@ print("least at", {mode: round(float(at), 1) for mode, at in lowest.items()})
 # %% [markdown]
 # *Figure: The loss over the error of three modes of shape: three valleys with their lowest point at the true shape.*
 #
-# The valleys are there, and their floors are where they should be. Along one mode they are wide. With a wrong pose they
-# are not: then the picture is read at places that show something else, such as a nostril in place of a cheek. So
-# photometric fitting starts from a fit to landmarks, never from nothing.
+# The valleys are there, and their floors are where they should be: two standard deviations off, one still finds the way
+# down. A wrong *pose* has no such valley. The picture is then read at places that show something else, a nostril in
+# place of a cheek, and a small change tells nothing. So photometric fitting starts from a fit to landmarks, never from
+# nothing.
 #
 # ## A gradient, and its test
 #
@@ -275,14 +278,15 @@ print(f"slopes: ours {check.slopes.min():.2f} or more; with a gradient 2 % too s
 # ## All at once: `tg.photometric_fit`
 #
 # The library does this for identity, expression, pose and paint together, with landmarks and prior in the loss, normals
-# and reading places moving along, and gradients tested as above. It starts from `tg.fit_3dmm`. How much better is the
-# shape? Here the truth is known. The distance to it is measured in millimetres over the face, after place, size and
-# turn are taken out (lesson 2).
+# and reading places moving along, and gradients tested as above. It starts from `tg.fit_3dmm`. Two options say how far
+# it may go: a picture counts as so many independent observations (pixels beside each other err alike), and the samples
+# are chosen and weighed anew in each pass. How much better is the shape? Here the truth is known. The distance to it is
+# measured in millimetres over the face, after place, size and turn are taken out (lesson 2).
 
 # %%
 points = camera.project(V_true[model.landmarks])
 coarse = tg.fit_3dmm(picture, points)
-options = tg.PhotometricOptions(independent_samples=100, passes=8)  # for clean photographs
+options = tg.PhotometricOptions(independent_samples=100, passes=8)  # for clean pictures; 20 and 4 without asking
 refined = tg.photometric_fit(picture, coarse, points, options=options)
 face = model.region("face")
 
@@ -311,15 +315,17 @@ def heat(V, yaw=-35):
 show([heat(V_true), *(heat(V) for V in shapes.values())], ["truth", *(f"{n}: {e:.1f} mm" for n, e in errors.items())])
 
 # %% [markdown]
-# *Figure: Four heads from three quarters: the truth; the mean face, red nearly all over; the fit to landmarks, with a
-# red forehead and reddish cheeks; and the photometric fit, nearly white.*
+# *Figure: Four heads from three quarters, white where they are true and red where they are 6 mm off or more: the truth;
+# the mean face, red nearly all over; the fit to landmarks, with a red forehead and reddish cheeks; and the photometric
+# fit, nearly white.*
 #
 # The landmarks do not see cheeks, forehead and depth; the shading does. But look at the conditions of this success: the
 # paint was the model's, the surface matt, no shadow fell, no hair. Real pictures keep none of these promises.
 #
 # ## A photograph
 #
-# The astronaut: photograph, rendering, paint, and what is left. `residual_map` is rendering minus picture.
+# The astronaut: photograph, rendering, paint, and what is left. `residual_map` is rendering minus picture; the
+# brightest colour stands for a third of the whole range or more.
 
 # %%
 path = data_path("examples/portraits/astronaut.png")
@@ -344,10 +350,11 @@ print(f"{report.residual_before:.3f} with the best light, {report.residual_after
 # *Figure: The astronaut's face; the model's face in her place, lit alike; its paint without light; and what is left,
 # which is largest where hair covers the forehead, and at eyes, mouth and brows.*
 #
-# Most of the gain comes from the light. Hair, teeth and shadows are nothing that this model can paint; its skin
-# likelihood and robust weights keep them from bending the shape. The weight of the picture follows from how well it is
-# explained: in a clean rendering the pixels rule, in a drawing, where shading is what the artist liked, the landmarks
-# do. That is why `tg.make_avatar` leaves it off unless you ask (`photometric=True`).
+# Most of the gain comes from the light. Hair, teeth and shadows are nothing that this model can paint. Two things keep
+# them from bending the shape: pixels count less the less their colour is like the skin of this face, and less the worse
+# they are explained (lesson 5). How much the picture counts against the landmarks follows from how well it is explained
+# as a whole. In a clean rendering the pixels rule; in a drawing, whose shading is what the artist liked, the landmarks
+# do. For a drawing there is little to gain, so `tg.make_avatar` leaves it off unless you ask (`photometric=True`).
 #
 # ## Exercises
 #

@@ -56,8 +56,9 @@ print(f"the head is turned by {face.camera.yaw:.0f} degrees")
 # ## The atlas
 #
 # Every vertex has a second place, in a square of side 1: its texture coordinates $(u, v)$, as if the skin had been cut
-# open and flattened. A seam has its vertices twice, so triangles have corners of their own in the atlas: `uv_faces` (m,
-# 3) beside `faces` (m, 3). The atlas is made once for the model, and is the same for all heads.
+# open and flattened. On a cut, one vertex of the head lies at two places of the atlas. So there are more places than
+# vertices, and each triangle has its corners twice: as vertices in `faces` (m, 3), as places in `uv_faces` (m, 3). The
+# atlas is made once for the model, and is the same for all heads.
 
 # %%
 SIZE, FACE = 256, np.s_[:165, 30:226]  # texels; and where the face lies in the atlas
@@ -124,10 +125,12 @@ naive = picture_of(colour, inside)
 # Eight lines, and we have a texture. It is wrong: a line of sight passes through *two* sides of the head, and both got
 # the colour of the near one. Two tests sort that out.
 #
-# 1. *Is it turned to us?* The cosine between the normal of the skin and the direction to the camera: 1 is face to face,
-#    0 is edge-on, where one pixel covers a long strip of skin, below 0 is the far side.
-# 2. *Is nothing before it?* The mesh rasterised in the picture gives the depth of the nearest skin at every pixel. What
-#    lies more than a few millimetres behind that is hidden, as a cheek behind a nose.
+# 1. *Is it turned to us?* The cosine between the normal of the skin and the direction to the camera, which is the third
+#    row of its rotation: 1 is face to face, 0 is edge-on, where one pixel covers a long strip of skin, below 0 is the
+#    far side.
+# 2. *Is nothing before it?* The mesh rasterised in the picture gives the depth of the nearest skin at every pixel, in
+#    mm, larger towards the viewer. What lies more than a few millimetres behind that is hidden, as a cheek behind a
+#    nose.
 
 # %%
 cosine = vertex_normals(V, F) @ face.camera.rotation[2]
@@ -159,8 +162,9 @@ hidden = float((inside & (behind >= 3.0)).sum() / inside.sum())
 print(f"{hidden:.0%} of the texels in the picture are hidden, {np.mean(confidence[on_skin] > 0.5):.0%} can be believed")
 
 # %% [markdown]
-# *Figure: Four atlases: the picture's colours everywhere, with the far side of the face smeared; the cosine, high on
-# one side; what is not hidden; and the confidence, which is left on the near side and the front.*
+# *Figure: Four atlases, the last three from blue for 0 to yellow for 1: the picture's colours everywhere, with the far
+# side of the face smeared; the cosine, high in front and at the near cheek; what is not hidden; and the confidence,
+# which is left in front and on the near side.*
 #
 # Also hair and background must not get onto the skin, nor the black lines between them. That is the work of
 # `tg.parse_face`, which says of each pixel what it shows. We keep eight pixels away from all that is hair or

@@ -85,7 +85,7 @@ show(
 
 # %% [markdown]
 # *Figure: The man's face 46 times, each with one expression's name and dark colour where it moves: brows, cheeks, lids,
-# jaw, corners of the mouth, lips, sides of the nose, tongue.*
+# jaw, corners of the mouth, lips, sides of the nose. The last, of the tongue, moves nothing that is seen.*
 #
 # Nearly all come in pairs, left and right (the *subject's* left and right). Most move a small place. The jaw moves
 # much.
@@ -177,8 +177,8 @@ print(f"greatest error: {recovered:.3f} from all vertices, {recovered_few:.2f} f
 # shut while the jaw opens (chewing, "m") needs a blendshape that undoes the jaw's work on the lips alone: `mouthClose`,
 # a *corrective*. `tg.fit_mouth` makes it close, `tg.fit_lids` finds the eyeballs and makes the lids of a blink meet.
 #
-# The man's face is near the template, and hardly needs them. A manga girl does: her eyes are five times as high as
-# the man's. We compare her rig as transferred with the finished one.
+# The man's face is near the template, and hardly needs them. A manga girl does: her eyes are nearly five times as
+# high as the man's. We compare her rig as transferred with the finished one.
 
 # %%
 manga = tg.read_landmarks(data_path("examples/portraits/manga_girl.pts"))
@@ -258,19 +258,22 @@ centre, radius = sphere(known)
 sphere_error = max(np.abs(centre - eyes.centres[0]).max(), abs(radius - eyes.radii[0]))
 assert sphere_error < 1e-9
 
-edges = np.unique(np.concatenate([L[42:48]]))  # six points on the edges of the left lids
-centre, radius = sphere(rig.neutral[edges])
-print(f"radius of the left eye: {radius:.1f} mm from six points of the lids, {eyes.radii[0]:.1f} mm by the library")
+edges = rig.neutral[L[42:48]]  # six points on the edges of the left lids
+nudged = [sphere(edges + 0.5 * rng.standard_normal(edges.shape))[1] for _ in range(100)]
+low, high = np.percentile(nudged, [10, 90])
+print(f"radius of the left eye: {sphere(edges)[1]:.0f} mm from six points of the lids;")
+print(f"with each of them moved by half a millimetre, {low:.0f} to {high:.0f} mm (eight times of ten)")
+print(f"by the library: {eyes.radii[0]:.0f} mm")
 
 # %% [markdown]
-# On points of a whole sphere the four unknowns are found exactly. From the edges of lids alone they are nearly
-# arbitrary: the edges lie almost in one plane, and through a plane circle go spheres of every size. So the library's
-# `tg.fit_eyes` adds what is known of eyes (how large they are beside their opening) and what must not happen (the
-# eyeball coming out of the cheek).
+# On points of a whole sphere the four unknowns are found exactly. The edges of lids are only a narrow band of it,
+# nearly a circle in a plane, and through such a circle go spheres of every size: half a millimetre at six points moves
+# the radius by a tenth. So the library's `tg.fit_eyes` adds what is known of eyes (how large they are beside their
+# opening) and what must not happen (the eyeball coming out of the cheek).
 #
 # Then the gaze. A vertex of the eyeball is $c + r\,R\,u$, with $u$ on the unit sphere and a rotation $R$. To look to
-# the left is a turn about the vertical axis; `eyes.turn` says how far an eye may turn before its iris would leave the
-# lids.
+# the left is a turn about the vertical axis. How far an eye may turn before its iris would leave the lids stands in
+# `eyes.turn`, in degrees: a row for each eye, the left one first; columns sideways, and up or down.
 
 # %%
 degrees = eyes.turn[0, 0]

@@ -206,7 +206,8 @@ angle_error = np.abs(np.degrees(w[:, 2]) - 3 * V[:, 0]).max()
 print(f"farthest off the line: {angle_error:.2f} degrees")
 
 # %% [markdown]
-# *Figure: The angle of every vertex plotted over its place along the bar: a straight line from 0 to 60 degrees.*
+# *Figure: The angle of every vertex plotted over its place along the bar: a straight line from 0 to 60 degrees. Only
+# the two tips, whose rings are all on one side, stand off it.*
 #
 # ## Doubling, and a mesh again
 #
@@ -313,7 +314,7 @@ def jaw_area(P):
 
 
 jaw = mean + model.expression[model.expression_index("jawOpen")][skin]
-w_jaw = deform.fit(jaw, ridge=1e-4).w  # Eq. 9: the weights whose gradients come nearest
+w_jaw = deform.fit(jaw, ridge=1e-4).w  # Eq. 9: the weights whose gradients come nearest; large ones cost a little
 amounts = (1.0, 1.5, 2.0)
 along = [mean + a * (jaw - mean) for a in amounts]
 turned = [deform.vertices(a * w_jaw) for a in amounts]
@@ -325,7 +326,7 @@ show([head(P) for P in along + turned], titles, rows=2, side=2.4)
 
 # %% [markdown]
 # *Figure: The jaw opened once, one and a half times and twice. By displacements the chin becomes longer and longer; in
-# the deformation space the jaw turns on and keeps its size, while the lips crumple at twice the expression.*
+# the deformation space the jaw turns on and hardly grows, while the lips crumple at twice the expression.*
 #
 # The space is not magic. Lips are the hardest place of a face: at twice the expression they crumple, because what two
 # lips may not do (go through each other) is nothing that gradients know.
@@ -370,7 +371,7 @@ pictures, table = [], {}
 for name in ("moustache_man", "blue_girl"):
     path = data_path(f"examples/portraits/{name}.png")
     img, landmarks = tg.read_image(path), tg.read_landmarks(path.with_suffix(".pts"))
-    fits = [linear_fit(landmarks, model, model.mean, modes, weight) for weight in (3000.0, 0.0)]
+    fits = [linear_fit(landmarks, model, model.mean, modes, prior) for prior in (3000.0, 0.0)]  # px² a coefficient
     fits.append(tg.fit_caricature(img, landmarks, space=faces))
     table[name] = [(missed(fit, landmarks), folds(fit.vertices[skin], deform.faces)) for fit in fits]
     print(f"{name:14s}", "   ".join(f"missed by {m:4.1f} %, {k:4d} folds" for m, k in table[name]))
@@ -381,13 +382,14 @@ for name in ("moustache_man", "blue_girl"):
 show(pictures, ["drawing", "linear, with prior", "linear, without", "deformation space"] * 2, rows=2, side=2.2)
 
 # %% [markdown]
-# *Figure: Two drawings with three heads each in clay: with a prior both heads look like the mean face; without it they
-# are torn to pieces; in the deformation space they have the man's broad face and the girl's large eyes.*
+# *Figure: Two drawings with three heads each in clay: with a prior both heads look like the mean face; without it the
+# man's is torn to pieces, and the girl's is blown up until one scrap of it fills the picture; in the deformation space
+# they have the man's broad face and the girl's large eyes.*
 #
 # Why does the second way fail, although it meets its landmarks? 136 numbers (68 points, two each) do not determine 145
-# coefficients, and among those that meet them most are no faces. The prior of the first way chooses a face, but pulls
-# towards the mean. The third way asks for something local: pieces of surface that deform *like* pieces of faces do, and
-# more of it where the drawing wants more.
+# coefficients (81 of identity, 64 of expression), and among those that meet them most are no faces. The prior of the
+# first way chooses a face, but pulls towards the mean. The third way asks for something local: pieces of surface that
+# deform *like* pieces of faces do, and more of it where the drawing wants more.
 #
 # ## Exaggeration
 #

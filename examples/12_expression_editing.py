@@ -12,7 +12,7 @@
 # **How does a drawing smile, and stay the same drawing?**
 #
 # Lesson 10 makes a *head* smile. Here the *picture* shall: same paper, same lines, same hair, another expression. The
-# method is that of Chen, Zheng, Wu, Wang, Lai and Zheng, *Modeling caricature expressions by 3D blendshape and dynamic
+# method is that of Chen, Zheng, Cai and Zhang, *Modeling caricature expressions by 3D blendshape and dynamic
 # texture*, 2020: geometry says where things go, and a second texture says what has to be painted that was not there.
 # They train a network for the texture; the library does without, and one can be plugged in.
 
@@ -86,7 +86,7 @@ print(f"without a change the warped picture differs by {still} of 255")
 
 # %% [markdown]
 # *Figure: The drawing of the man; his smile by moved pixels alone, good but for specks between the lips; and his
-# surprise, with skin where the mouth should be open, and a chin that has lost its outline.*
+# surprise, with skin where the mouth should be open, and without the outline of its chin, which leaves the picture.*
 #
 # The smile nearly works: the skin is all there, it only moves. Lines stay lines, because nothing was painted. Surprise
 # does not work, for two reasons. The mouth opens on something that *the picture never showed*. And what surrounds the
@@ -128,7 +128,7 @@ print(f"mean difference to tg.attention_map, which is smoothed a little: {attent
 # drawing's own palette.
 
 # %%
-texture = avatar.texture
+texture = avatar.texture  # (512, 512, 3) uint8
 generator = tg.ClassicalTextureGenerator(model, rig, texture)
 weights = avatar.rig.weights(surprise)
 colour, A = generator(texture, rig.pose, weights, geometry)
@@ -152,7 +152,7 @@ show([part[HEAD][::2, ::2] for part in maps], ["T", "A (white: keep)", "C", "T*"
 #
 # `tg.ExpressionEditor` puts it together. What the picture shows is taken from the picture; what it never showed from
 # the new texture. Around the face the picture moves along and comes to rest a little farther out; beyond that, not one
-# pixel is touched. The face is fitted once, and each frame is then a matter of milliseconds.
+# pixel is touched. The face is fitted once; each frame then takes a tenth of a second or two.
 
 # %%
 editor = tg.ExpressionEditor(img, landmarks, avatar=avatar)
@@ -192,7 +192,7 @@ lender = tg.fit_3dmm(photo, tg.read_landmarks(path.with_suffix(".pts")))
 lent = lender.expression_weights()
 strongest = sorted(lent, key=lent.get, reverse=True)[:4]
 print("the astronaut's strongest:", ", ".join(f"{name} {lent[name]:.1f}" for name in strongest))
-results = [editor.frame(editor.added({name: w for name, w in smile.items()})), editor.frame(lender)]
+results = [editor.frame(editor.added(smile)), editor.frame(lender)]
 show(
     [photo[50:280, 120:330], *(frame[CROP] for frame in results)],
     ["astronaut", "the man, more smile", "hers, lent"],
@@ -249,7 +249,8 @@ other = float((changed[1] < landmarks[27, 0]).mean())  # his right is on the lef
 print(f"{len(changed[0])} of {img.shape[0] * img.shape[1]} pixels, {other:.0%} of them on the other half")
 
 # %%
-# 2. Vertices are a sum of displacements times weights, and this camera is affine: so are the pixels.
+# 2. Vertices are a sum of displacements times weights, and this camera only multiplies and shifts (lesson 4): so pixels
+#    are a sum of displacements times weights, too.
 steps = np.linspace(0, 1, 5)
 tracks = np.array([editor.landmarks({"mouthSmileLeft": w, "jawOpen": 0.5 * w}) for w in steps])
 even = float(np.abs(np.diff(tracks, axis=0) - (tracks[-1] - tracks[0]) / 4).max())

@@ -124,7 +124,7 @@ extent = (window[1].start, window[1].stop, window[0].stop, window[0].start)
 fig, axes = plt.subplots(1, 3, figsize=(8.4, 2.9), layout="constrained")
 axes[0].imshow(img[window], extent=extent)
 axes[1].imshow(warp.picture(img)[window], extent=extent)
-axes[2].imshow(np.full((*areas.shape, 3), 255, np.uint8)[:2, :2], extent=extent)
+axes[2].imshow(np.full((2, 2, 3), 255, np.uint8), extent=extent)  # white paper
 for ax, lines in ((axes[0], grid), (axes[2], moved)):
     ax.plot(*lines.transpose(2, 0, 1), color="tab:blue", linewidth=0.5)
     ax.plot(*lines.transpose(2, 1, 0), color="tab:blue", linewidth=0.5)
@@ -190,8 +190,9 @@ plt.show()
 # *Figure: Four line drawings through the landmarks, from the average face over this one to two exaggerations, in which
 # the jaw gets narrower and the smile more one-sided.*
 #
-# The library's style `"caricature"` takes these differences as velocities at the landmarks, spreads them by Gaussians,
-# and follows the flow: even 2.6 times what is special does not fold the picture.
+# Moved like that, lines may cross: look at the brow on the right at the largest $e$. The library's style `"caricature"`
+# takes the differences, times 1.3, as *velocities* at the landmarks, spreads them by Gaussians, and follows the flow,
+# which folds nothing.
 #
 # ## 4. Tones
 #
@@ -200,7 +201,8 @@ plt.show()
 #
 # $$ Q(L) = L_0 + \frac{\Delta}{2}\,\frac{\tanh\!\big(2\varsigma\,(L - L_0)/\Delta\big)}{\tanh \varsigma}, $$
 #
-# where $L_0$ is the nearest border of two levels. Small $\varsigma$ leaves a photograph, large $\varsigma$ gives steps.
+# where $L_0$ is the nearest border of two levels, and lightness runs from 0 (black) to 100 (white). Small $\varsigma$
+# leaves a photograph, large $\varsigma$ gives steps.
 # Pixels must be smoothed first, or the noise of the skin jumps between levels.
 
 
@@ -214,7 +216,7 @@ lab = rgb2lab(img)
 smooth = np.dstack([gaussian_filter(lab[..., k], 1.5) for k in range(3)])
 width = 100 / 6
 levels = quantized(smooth[..., 0], width, 4.0)
-mean_jump = float(np.abs(levels - smooth[..., 0]).max())
+largest_change = float(np.abs(levels - smooth[..., 0]).max())
 posterized = lab2rgb(np.dstack([levels, smooth[..., 1:]]))
 
 ramp = np.linspace(0, 100, 501)
@@ -241,7 +243,8 @@ plt.show()
 # ## 5. Lines
 #
 # Lines are where a picture is darker than its surroundings. The difference of two Gaussians (one a little wider) is a
-# cheap measure of that; the *extended* one (XDoG, Winnemoeller et al. 2012) keeps the picture's own darkness with it:
+# cheap measure of that; the *extended* one (XDoG, Winnemoeller et al. 2012) keeps the picture's own darkness with it.
+# $G_\sigma * L$ is the picture smoothed by a Gaussian of $\sigma$ pixels, with $L$ from 0 to 1:
 #
 # $$ D = (1 + \tau)\,G_\sigma * L \;-\; \tau\,G_{k\sigma} * L, \qquad
 #    T = \begin{cases} 1 & D \ge \varepsilon \\ 1 + \tanh(\phi\,(D - \varepsilon)) & \text{else.} \end{cases} $$
@@ -375,7 +378,7 @@ numbers: dict[str, float] = {
     "there_and_back_px": there_and_back,
     "least_area_factor": float(areas.min()),
     "similarity_left": float(similarity_left),
-    "largest_change_of_lightness": mean_jump,
+    "largest_change_of_lightness": largest_change,
     "grey_without_difference": grey_pixels[0],
     "grey_with_lines": grey_pixels[-1],
     "colours_of_photograph": float(colours[0]),

@@ -187,7 +187,7 @@ plt.show()
 
 # %% [markdown]
 # *Figure: The mean of your model from the front and turned, with its landmarks as red dots and blue lines across the
-# cheeks on which the points of the jaw may slide.*
+# cheeks on which the points of the jaw may slide. Those of the far side are drawn through the head.*
 #
 # Your model misses the landmarks by more: it knows twelve people and no smile, and the astronaut smiles.
 #
@@ -238,12 +238,12 @@ shown = {
     "with a rig": (moved, rigged.faces),
     "jawOpen": (posed(jawOpen=0.8), rigged.faces),
     "smile": (posed(mouthSmileLeft=1.0, mouthSmileRight=1.0), rigged.faces),
-    "mean: astronaut": (fit.vertices, rigged.faces),
+    "fitted to the astronaut": (fit.vertices, rigged.faces),
 }
 fig, axes = plt.subplots(1, 5, figsize=(10, 2.4), layout="constrained")
 for ax, (name, (V, faces)) in zip(axes, shown.items(), strict=True):
     ax.imshow(clay(V, faces))
-    ax.set_title("fitted to the astronaut" if name.startswith("mean") else name, fontsize=9)
+    ax.set_title(name, fontsize=9)
     ax.axis("off")
 plt.show()
 

@@ -1,17 +1,27 @@
-"""Plots of the tables of ``benchmarks/RESULTS.md``, drawn when the site is built."""
+"""Plots of the tables of ``benchmarks/RESULTS.md``, and of the ratios over commits, drawn when the site is built."""
 
 import re
 from dataclasses import dataclass
 
+from ratio_plot import draw_ratios, ratio_runs, told_ratios
 from repository_links import DOCS, ROOT
 
 __all__ = ["CHARTS", "drawn_charts", "result_plots", "setup"]
 
 _RESULTS = ROOT / "benchmarks" / "RESULTS.md"
+_HISTORY = ROOT / "benchmarks" / "ratio_history.csv"
 _PLOTS = DOCS / "_static" / "plots"
 _PAGE = DOCS / "project" / "plots.md"
 _INK = {"light": "#222832", "dark": "#ced6dd"}  # text of the theme on its ground
 _BARS = {"light": ("#0a7d91", "#b35900"), "dark": ("#4fc3d9", "#f0a35e")}
+
+
+_OVER_COMMITS = """## Over commits
+
+How many times as long the rival of each case takes, in the same run, at the commits at which `benchmarks/speed.py` was
+recorded; up is faster. The figure beside each axis is the last. All plots have one scale: the same slope is the same
+factor.
+"""
 
 
 @dataclass(frozen=True)
@@ -117,15 +127,20 @@ def result_plots(app=None) -> None:
         told = "; ".join(
             f"{label} {', '.join(f'{v:g}' for v in row)}" for label, row in zip(labels, values, strict=True)
         )
-        for theme in ("light", "dark"):
-            parts.append(
-                f"```{{image}} /_static/plots/{chart.name}_{theme}.svg\n"
-                f":alt: {chart.title}. {told}.\n:class: only-{theme}\n```\n"
-            )
+        parts += [_shown(chart.name, f"{chart.title}. {told}.", theme) for theme in ("light", "dark")]
+    runs, cases = ratio_runs(_HISTORY)
+    parts.append(_OVER_COMMITS)
+    for theme in ("light", "dark"):
+        draw_ratios(_PLOTS / f"ratios_{theme}.svg", runs, cases, _INK[theme], _BARS[theme][0])
+        parts.append(_shown("ratios", told_ratios(runs, cases), theme))
     text = "\n".join(parts)
     _PAGE.parent.mkdir(exist_ok=True)
     if not _PAGE.exists() or _PAGE.read_text(encoding="utf-8") != text:
         _PAGE.write_text(text, encoding="utf-8")
+
+
+def _shown(name: str, told: str, theme: str) -> str:
+    return f"```{{image}} /_static/plots/{name}_{theme}.svg\n:alt: {told}\n:class: only-{theme}\n```\n"
 
 
 def _draw(chart: Chart, labels: list[str], values: list[list[float]], theme: str) -> None:

@@ -163,7 +163,10 @@ def test_frames_of_landmarks_without_a_face_are_held(tmp_path, avatar):
     [
         ({"--weights": "none.csv"}, "none.csv"),
         ({"--weights": "broken.csv"}, "expected columns named like ARKit's expressions, got Jaw"),
-        ({"--weights": "broken.npy"}, "expected an array of numbers in NumPy's format, but broken.npy is damaged"),
+        (
+            {"--weights": "broken.npy"},
+            "--weights: expected an array of numbers in NumPy's format, but broken.npy is damaged",
+        ),
         ({"--weights": "take.txt"}, "weights: expected a .csv or .npy file"),
         ({"-o": "take.avi"}, "output: expected a name that ends in .mp4, .webm, .glb, .csv"),
         ({"-o": "no/take.mp4"}, "output: no folder"),
@@ -172,6 +175,9 @@ def test_frames_of_landmarks_without_a_face_are_held(tmp_path, avatar):
         ({"--size": "33"}, "size: expected an even number of px"),
         ({"--fps": "0"}, "fps: expected 1 to 240"),
         ({"--fps": "0", "-o": "out.glb"}, "fps: expected a rate > 0"),
+        ({"--size": "100000"}, "size: expected at most as many pixels as 5792 x 5792, got 100000 x 100000"),
+        ({"--processes": "0"}, "processes: expected 1 to 61, got 0"),
+        ({"--processes": "999999"}, "processes: expected 1 to 61, got 999999"),
         ({"--start": "3"}, "start, end: expected a frame between 3.0 and None s, got none (the take is 0.50 s long)"),
         ({"--actor": "corner"}, "actor: expected a film of an actor (video) to show, got none"),
         ({"--sound": "take.csv"}, "sound: expected a file with a sound, got take.csv"),

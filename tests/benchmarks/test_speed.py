@@ -1,5 +1,6 @@
 """Ratios that are compared with committed ones."""
 
+import csv
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,9 @@ def speed(monkeypatch, tmp_path):
         return lambda: (ours, "a rival", rival)
 
     monkeypatch.setattr(script, "RATIOS", tmp_path / "ratios.csv")
+    monkeypatch.setattr(script, "HISTORY", tmp_path / "benchmarks" / "ratio_history.csv")
+    script.HISTORY.parent.mkdir()
+    script.HISTORY.write_text("date,commit,case,ratio\n", encoding="utf-8")
     return script, runs
 
 
@@ -49,6 +53,33 @@ def test_only_a_ratio_that_stays_worse_fails(speed, monkeypatch, capsys, ratios,
     monkeypatch.setattr(script, "CASES", {"a": runs(ratios)})
     assert script.check() == code
     assert capsys.readouterr().out.startswith(word)
+
+
+def test_recorded_runs_are_added_to_the_history_and_quick_ones_are_not(speed, monkeypatch, capsys):
+    script, runs = speed
+    for part in ("by_vertices", "by_modes", "by_faces", "processes"):
+        monkeypatch.setattr(script, part, lambda *_: None)
+    for slowness, arguments in ((4.0, ["--record"]), (2.0, []), (9.0, ["--quick"])):
+        monkeypatch.setattr(script, "CASES", {"a, b": runs([slowness])})
+        monkeypatch.setattr(script.sys, "argv", ["speed.py", *arguments])
+        assert script.main() == 0
+    assert capsys.readouterr().out.count("| a, b | 1000.0 | a rival |") == 2
+    lines = script.HISTORY.read_text(encoding="utf-8").splitlines()
+    assert [line.partition(',"')[2] for line in lines] == ["", 'a, b",4.00', 'a, b",2.00']
+    assert all(line.startswith(script.origin(ROOT)["date"]) for line in lines[1:])
+
+
+def test_the_history_has_every_case_of_each_run():
+    with (ROOT / "benchmarks" / "ratio_history.csv").open(newline="", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    with (ROOT / "benchmarks" / "ratios.csv").open(newline="", encoding="utf-8") as stream:
+        cases = [row["case"] for row in csv.DictReader(stream)]
+    assert len(rows) % len(cases) == 0
+    for k in range(0, len(rows), len(cases)):
+        run = rows[k : k + len(cases)]
+        assert [row["case"] for row in run] == cases
+        assert len({(row["date"], row["commit"]) for row in run}) == 1
+        assert all(float(row["ratio"]) > 0 for row in run)
 
 
 def test_the_committed_cases_are_those_that_are_measured(monkeypatch):

@@ -59,6 +59,21 @@ def test_charts_show_the_numbers_of_the_results():
         assert len(set(chart.without) & set(labels)) == 0
 
 
+def test_the_plot_of_ratios_tells_all_runs_of_the_history(tmp_path):
+    from ratio_plot import draw_ratios, ratio_runs, told_ratios
+
+    path = tmp_path / "history.csv"
+    rows = [f'2026-01-0{day},c{day},"{case}",{day + k}' for day in (1, 2) for k, case in enumerate(("a, b", "c"))]
+    path.write_text("\n".join(["date,commit,case,ratio", *rows]), encoding="utf-8")
+    runs, cases = ratio_runs(path)
+    assert runs == ["2026-01-01 c1", "2026-01-02 c2"]
+    assert cases == {"a, b": [1.0, 2.0], "c": [2.0, 3.0]}
+    assert told_ratios(runs, cases).endswith("2026-01-02 c2: a, b 1, 2; c 2, 3.")
+    pytest.importorskip("matplotlib")
+    draw_ratios(tmp_path / "plot.svg", runs, cases, "#000000", "#0a7d91")
+    assert (tmp_path / "plot.svg").read_text(encoding="utf-8").count("<!-- c1 -->") == 2  # an axis for each case
+
+
 @pytest.mark.parametrize(
     ("latex", "within"),
     [

@@ -211,3 +211,73 @@ def test_gaps_may_be_held(path):
     assert held.notes[-1].endswith("which were filled from the frames before")
     with pytest.raises(ValueError, match="gaps: expected 'interpolate' or 'hold', got 'zero'"):
         read_live_link(path, gaps="zero")
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-8-sig"])
+@pytest.mark.parametrize("before", ["", "sep=|\n", "# recorded on Monday, 10:59\n"])
+def test_what_spreadsheets_put_before_the_heading(path, values, plain, encoding, before):
+    write_take(path, values, delimiter="|")
+    path.write_bytes((before + path.read_text()).encode(encoding))
+    take = read_live_link(path)
+    np.testing.assert_array_equal(take.weights, plain.weights)
+    np.testing.assert_array_equal(take.times, plain.times)
+
+
+@pytest.mark.parametrize(
+    "row", [["0"] + ["0"] * 61, ["0"] + ["0.000"] * 61, ["61"] + ["#N/A"] * 61, ["61"] + ["n/a"] * 61, []]
+)
+def test_a_frame_without_a_face_however_it_is_written(path, values, plain, row):
+    lines = write_take(path, values).read_text().splitlines()
+    lines[7] = ",".join([lines[7].split(",")[0], *row])
+    path.write_text("\n".join(lines))
+    take = read_live_link(path)
+    np.testing.assert_allclose(take.weights[6], (plain.weights[5] + plain.weights[7]) / 2)
+    assert take.notes[0].startswith("1 of 40 frames have gaps")
+
+
+@pytest.mark.parametrize("names", [("jaw_open", "eyeBlink_L"), ("blendShape1.jawOpen", "A14_Eye_Blink_Left")])
+def test_names_as_other_programs_write_them(path, names):
+    path.write_text(f"time,{names[0]},{names[1]}\n0,0.5,1\n1,0,0\n")
+    weights = read_live_link(path).weights[0]
+    assert {EXPRESSIONS[k]: weights[k] for k in np.flatnonzero(weights)} == {"jawOpen": 0.5, "eyeBlinkLeft": 1}
+
+
+def test_drop_frame_codes_keep_with_the_clock(path):
+    def label(frame):  # SMPTE 12M: 2 of 1800 labels are left out each minute, but not each tenth
+        tens, rest = divmod(frame, 17982)
+        frame += 18 * tens + (2 * ((rest - 2) // 1798) if rest > 2 else 0)
+        return f"{frame // 108000:02}:{frame // 1800 % 60:02}:{frame // 30 % 60:02};{frame % 30:02}"
+
+    frames = np.arange(0, 20000, 7)
+    write_take(path, np.zeros((len(frames), 1)), ["JawOpen"], codes=list(map(label, frames)))
+    np.testing.assert_allclose(read_live_link(path).times, frames * 1001 / 30000, atol=1e-9)
+
+
+def test_codes_of_film_on_american_television(path):
+    codes = [f"00:{k // 1440:02}:{k // 24 % 60:02}:{k % 24:02}" for k in range(3000)]
+    write_take(path, np.zeros((3000, 1)), ["JawOpen"], codes=codes)
+    np.testing.assert_allclose(read_live_link(path, fps=23.976).times, np.arange(3000) / 23.976, atol=1e-9)
+    np.testing.assert_allclose(read_live_link(path).times, np.arange(3000) / 24, atol=1e-9)
+
+
+def test_midnight_of_drop_frame_codes(path):
+    codes = ["23:59:59;28", "23:59:59;29", "00:00:00;00", "00:00:00;01"]
+    write_take(path, np.zeros((4, 1)), ["JawOpen"], codes=codes)
+    np.testing.assert_allclose(np.diff(read_live_link(path).times), 1001 / 30000, atol=1e-6)
+
+
+@pytest.mark.parametrize(("unit", "start"), [(1e3, 0), (1e3, 1.7e12), (1e6, 1.7e15), (1e9, 1.7e18)])
+def test_a_clock_that_counts_parts_of_seconds(path, unit, start):
+    times = [str(int(start) + round(k * unit / 50)) for k in range(9)]
+    path.write_text("timestamp,jawOpen\n" + "".join(f"{time},0\n" for time in times))
+    take = read_live_link(path)
+    np.testing.assert_allclose(take.times, np.arange(9) / 50, atol=1e-6)
+    assert "taken for 1/1000" in take.notes[0]
+
+
+def test_turns_of_the_head_in_degrees(path, values, plain):
+    turned = values.copy()
+    turned[:, [name.startswith("Head") for name in LIVE_LINK]] *= 90
+    take = read_live_link(write_take(path, turned))
+    np.testing.assert_allclose(take.head, np.radians(plain.head * 90))
+    assert "taken for degrees" in take.notes[0]

@@ -3,6 +3,7 @@
 import errno
 import io
 import json
+import os
 import struct
 import warnings
 import zipfile
@@ -11,6 +12,7 @@ import zlib
 import numpy as np
 import pytest
 
+import toongeo
 from toongeo.reading.check_file import check_file, file_bytes
 from toongeo.reading.npy_array import npy_array
 from toongeo.reading.promise import promise, promised
@@ -170,3 +172,27 @@ def test_a_changed_byte_in_an_archive_is_noticed(tmp_path):
     (tmp_path / "b.npz").write_bytes(content)
     with pytest.raises(ValueError, match=r"path: expected x, but .*b\.npz is damaged"), warnings.catch_warnings():
         read_npz(tmp_path / "b.npz", ["x"], expected="x")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes have no names here")
+def test_no_reader_waits_for_a_pipe(tmp_path):
+    """Nobody writes into it: whoever opened it would wait for ever."""
+    pipe = tmp_path / "a.wav"
+    os.mkfifo(pipe)
+    readers = [
+        toongeo.read_image,
+        toongeo.read_landmarks,
+        toongeo.load_avatar,
+        toongeo.load_model,
+        toongeo.read_video,
+        toongeo.FaceFit.load,
+        toongeo.io.read_sound,
+        toongeo.io.has_sound,
+        toongeo.io.read_obj,
+        toongeo.io.read_glb,
+        toongeo.driving.read_visemes,
+        toongeo.driving.read_live_link,
+    ]
+    for read in readers:
+        with pytest.raises(ValueError, match=r"expected .*a\.wav"):
+            read(pipe)

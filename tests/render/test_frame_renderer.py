@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toongeo.render import FrameRenderer, ScaledOrthographicCamera, Surface, render_mesh
+from toongeo.render import FrameRenderer, ScaledOrthographicCamera, Surface, render_mesh, studio_light
 
 
 def ball(radius, centre, count=24):
@@ -43,6 +43,15 @@ def test_frames_are_what_render_mesh_draws(surfaces, yaw):
             for part, points in zip(surfaces, moved, strict=True)
         ]
         assert psnr(renderer.frame(moved), render_mesh(parts, camera, 160)) > 36
+
+
+def test_vertex_colours_and_coloured_light_are_those_of_render_mesh(surfaces):
+    camera = ScaledOrthographicCamera.look(size=160, extent=140.0)
+    light = studio_light() * [1.0, 0.7, 0.4]
+    textured = surfaces[0]
+    painted = Surface(surfaces[1].vertices, surfaces[1].faces, colours=0.5 + 0.4 * np.cos(surfaces[1].vertices / 9))
+    frame = FrameRenderer([textured, painted], camera, 160, light=light).frame([textured.vertices, painted.vertices])
+    assert psnr(frame, render_mesh([textured, painted], camera, 160, light=light)) > 36
 
 
 def test_outlines_are_as_smooth_as_those_of_render_mesh(surfaces):

@@ -3,8 +3,9 @@
 import secrets
 from collections.abc import Sequence
 from http import HTTPStatus
+from urllib.parse import parse_qs, urlsplit
 
-__all__ = ["HOST", "check_port", "refusal"]
+__all__ = ["HOST", "check_port", "path_and_token", "refusal"]
 
 HOST = "127.0.0.1"  # loopback, and nothing else: a face is nobody else's business
 
@@ -26,6 +27,21 @@ def check_port(port: int) -> None:
     """
     if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port < 2**16:
         raise ValueError(f"port: expected 0 (a free one) to 65535, got {port!r}")
+
+
+def path_and_token(target: str) -> tuple[str, str]:
+    """Path and token of a request target; nothing where it is none, which then is served nowhere.
+
+    Examples
+    --------
+    >>> path_and_token("/page?token=abc"), path_and_token("http://[")
+    (('/page', 'abc'), ('', ''))
+    """
+    try:
+        found = urlsplit(target)
+        return found.path, parse_qs(found.query).get("token", [""])[0]
+    except ValueError:  # brackets that hold no address
+        return "", ""
 
 
 def refusal(

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.app.commands.path_is import path_is
 from toongeo.driving import ArkitDriver, LandmarkDriver, Take, VideoDriver, read_live_link, unit_weights
 from toongeo.io import read_landmark_frames, read_video
 from toongeo.model.expression_schemes import EXPRESSIONS
@@ -66,11 +67,12 @@ class TakeSource:
         OSError, ValueError
             If the file cannot be read or is not what it should be.
         """
-        if self.weights is not None:
-            return read_take(self.weights, self.fps, gaps=self.gaps)
-        if self.landmarks is not None:
-            return read_landmark_take(self.landmarks, self.fps, scheme=self.scheme)
-        video = read_video(str(self.video))
+        with path_is(next(name for name, file in self.files.items() if file is not None)):
+            if self.weights is not None:
+                return read_take(self.weights, self.fps, gaps=self.gaps)
+            if self.landmarks is not None:
+                return read_landmark_take(self.landmarks, self.fps, scheme=self.scheme)
+            video = read_video(str(self.video))
         return VideoDriver(neutral=self.neutral).take(video if self.fps is None else replace(video, fps=self.fps))
 
 

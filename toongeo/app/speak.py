@@ -4,12 +4,13 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from toongeo.app.commands.path_is import path_is
 from toongeo.app.drive import check_performance, perform
 from toongeo.app.video.film_options import FilmOptions
 from toongeo.app.video.sound import Sound
 from toongeo.app.video.write_video import VIDEO_SUFFIXES
 from toongeo.driving import speak as speech
-from toongeo.io import has_pyav
+from toongeo.io import has_pyav, read_sound
 
 __all__ = ["speak"]
 
@@ -40,7 +41,10 @@ def speak(
     """
     options = FilmOptions() if options is None else options
     check_performance(avatar, output, options, {"visemes": visemes, "audio": audio})
-    take = speech(visemes, sound=audio, fps=max(60.0, options.fps))
+    with path_is("audio"):
+        heard = None if audio is None else read_sound(audio)
+    with path_is("visemes"):
+        take = speech(visemes, sound=heard, fps=max(60.0, options.fps))
     sound = None
     if audio is not None and output.suffix.lower() in VIDEO_SUFFIXES:
         if has_pyav():

@@ -23,6 +23,7 @@ __all__ = ["read_live_link", "scheme_matrix"]
 _Gaps = Literal["interpolate", "hold"]
 _FROM = {"interpolate": "around", "hold": "before"}
 _HEAD = ("HeadYaw", "HeadPitch", "HeadRoll")
+_TURN = 2 * np.pi  # no head turns so far: larger angles are degrees
 
 
 @promised("a table of weights")
@@ -32,12 +33,14 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None, ga
     Parameters
     ----------
     path
-        A CSV file with a heading; parted by commas, semicolons or tabs, with a point or a comma before decimals.
-        Any of the 52 expressions of ARKit or of our own, in any order and case; those that are not there are 0.
-        Times are in a column ``Timecode``, ``time`` (time codes, or s), ``time_ms`` or ``frame``, if there is one.
+        A CSV file with a heading; parted by commas, semicolons, tabs or bars, with a point or a comma before decimals.
+        Any of the 52 expressions of ARKit or of our own, in any order, as programs write them (``eyeBlink_L``,
+        ``jaw_open``); those that are not there are 0. Times are in a column ``Timecode``, ``time`` (time codes, or s),
+        ``time_ms`` or ``frame``, if there is one; steps that are too long for seconds are ms, us or ns. Turns of the
+        head are radians, or degrees if they are too large for these.
     fps : float, optional
-        Frames a second that the last part of a time code counts, or of a file without times. None: the rate that the
-        time codes show, or 60.
+        Frames a second that the last part of a time code counts (23.976 too), or of a file without times. None: the
+        rate that the time codes show, or 60.
     gaps : {"interpolate", "hold"}
         Numbers that are missing are drawn from the frames around, or are those of the frame before.
 
@@ -67,7 +70,7 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None, ga
         raise ValueError(f"gaps: expected 'interpolate' or 'hold', got {gaps!r}")
     table = read_table(Path(path))
     columns, notes = expression_columns(table)
-    times = frame_times(table, fps)
+    times, clock = frame_times(table, fps)
     kept = np.r_[True, np.diff(times) > 0]
     repeated = len(kept) - kept.sum()
     values = {name: table.numbers(column)[kept] for name, column in columns.items()}
@@ -80,11 +83,14 @@ def read_live_link(path: str | os.PathLike[str], *, fps: float | None = None, ga
             weights[:, EXPRESSIONS.index(own)] = share * column
     weights, unit = unit_weights(weights, str(path))
     head = np.column_stack([filled[name] for name in _HEAD]) if set(_HEAD) <= set(filled) else None
+    if head is not None and np.abs(head).max() > _TURN:
+        head = np.radians(head)
+        unit += (f"turns of the head of up to {np.degrees(np.abs(head).max()):.4g} were taken for degrees",)
     if repeated:
         notes += (f"{repeated} frames with the time of the one before were left out",)
     if missing.any():
         notes += (f"{missing.sum()} of {len(times)} frames have gaps, which were filled from the frames {_FROM[gaps]}",)
-    return Take(times - times[0], weights, head, (*table.notes, *notes, *unit))
+    return Take(times - times[0], weights, head, (*table.notes, *clock, *notes, *unit))
 
 
 def scheme_matrix(scheme: str, names: Sequence[str]) -> Floats:

@@ -11,7 +11,7 @@ from toongeo.driving.speech.coarticulated import coarticulated
 from toongeo.driving.speech.read_visemes import read_visemes
 from toongeo.driving.speech.sounding_mouth import sounding_mouth
 from toongeo.driving.speech.viseme_track import VisemeTrack
-from toongeo.driving.take import Take
+from toongeo.driving.take import MOST_FRAMES, Take
 from toongeo.io import read_sound
 
 __all__ = ["speak"]
@@ -77,4 +77,6 @@ def speak(
 
 
 def _times(seconds: float, fps: float) -> Floats:
+    if not seconds * fps < MOST_FRAMES:
+        raise ValueError(f"fps: expected at most {MOST_FRAMES} frames, got {seconds:.6g} s at {fps:g} frames a second")
     return np.arange(int(seconds * fps + 1e-6) + 1) / fps

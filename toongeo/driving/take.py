@@ -11,10 +11,10 @@ from toongeo._read_only import read_only, restored
 from toongeo.arrays import Floats
 from toongeo.model.expression_schemes import EXPRESSIONS
 
-__all__ = ["Take"]
+__all__ = ["MOST_FRAMES", "Take"]
 
 _TICK = 1e-6  # s, of rounding
-_MOST_FRAMES = 10**6  # 4.6 hours at 60 frames a second, 0.4 GB
+MOST_FRAMES = 10**6  # 4.6 hours at 60 frames a second, 0.4 GB
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +98,9 @@ class Take:
         """The same at a steady rate; linear in between."""
         if not (np.isfinite(fps) and fps > 0):
             raise ValueError(f"fps: expected a rate > 0, got {fps!r}")
-        if self.seconds * fps >= _MOST_FRAMES:
+        if self.seconds * fps >= MOST_FRAMES:
             raise ValueError(
-                f"fps: expected at most {_MOST_FRAMES} frames, got {self.seconds:.0f} s at {fps:g} frames a second"
+                f"fps: expected at most {MOST_FRAMES} frames, got {self.seconds:.6g} s at {fps:g} frames a second"
             )
         times = np.arange(int(self.seconds * fps + 1e-6) + 1) / fps
 

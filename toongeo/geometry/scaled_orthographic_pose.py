@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from toongeo.geometry.operators.cross import cross
+
 __all__ = ["scaled_orthographic_pose"]
 
 _FLATTEST = 1e-3  # smallest ratio of the two image axes of an affine camera that is taken for a face
@@ -55,7 +57,7 @@ def scaled_orthographic_pose(
             f"(extent {np.ptp(pixels[:, 0]):.4g} x {np.ptp(pixels[:, 1]):.4g} px)"
         )
     rows = U @ Vt
-    rotation = np.vstack([rows, np.cross(rows[0], rows[1])])
+    rotation = np.vstack([rows, cross(rows[:1].T, rows[1:].T).T])
     scale = float(s.mean())
     translation = (centre2 - scale * rows @ centre3) * _FLIP
     return scale, rotation, translation

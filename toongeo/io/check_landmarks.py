@@ -134,9 +134,9 @@ def _outside(points: NDArray[np.float64], usable: NDArray[np.int64], image_shape
 
 def _doubts(points: NDArray[np.float64], usable: NDArray[np.int64], pose: NDArray[np.float64]) -> list[str]:
     doubts = []
-    places, counts = np.unique(points[usable], axis=0, return_counts=True)
+    places, counts = np.unique(points[usable] @ (1, 1j), return_counts=True)  # quicker than unique rows
     if counts.max() > 2:
-        x, y = places[np.argmax(counts)]
+        x, y = places[np.argmax(counts)].real, places[np.argmax(counts)].imag
         doubts.append(f"{counts.max()} landmarks lie at ({x:g}, {y:g}): a missing point must be a row of NaN")
     if np.linalg.det(pose) < 0:  # nearly a profile: neither roll nor sides can be told
         return doubts

@@ -5,6 +5,8 @@ import importlib.util
 from pathlib import Path
 from typing import Any
 
+from toongeo.reading.check_file import check_kind
+
 __all__ = ["has_pyav", "has_sound", "load_pyav"]
 
 
@@ -27,7 +29,14 @@ def load_pyav(purpose: str) -> Any:
 
 
 def has_sound(path: Path) -> bool:
-    """Whether a file has a sound that can be read; False too if PyAV is missing."""
+    """Whether a file has a sound that can be read; False too if PyAV is missing.
+
+    Raises
+    ------
+    ValueError
+        If it is a device or a pipe.
+    """
+    check_kind(path, "sound")
     if not has_pyav():
         return False
     av = load_pyav("sound")

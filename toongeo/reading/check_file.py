@@ -6,7 +6,7 @@ import os
 import stat
 from pathlib import Path
 
-__all__ = ["MOST_MB", "check_file", "file_bytes"]
+__all__ = ["MOST_MB", "check_file", "check_kind", "file_bytes"]
 
 MOST_MB = 512  # an hour of OpenFace's table fits, at 30 frames a second; and any head in binary
 
@@ -21,11 +21,25 @@ def check_file(path: str | os.PathLike[str], most_mb: int = MOST_MB, argument: s
     ValueError
         If it is a device or a pipe, which might never end, or larger than ``most_mb``.
     """
-    status = Path(path).stat()
-    if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
-        raise ValueError(f"{argument}: expected a file, but {path} is a device or a pipe")
-    if status.st_size > most_mb * 2**20:
+    check_kind(path, argument)
+    if Path(path).stat().st_size > most_mb * 2**20:
         raise ValueError(f"{argument}: expected a file of at most {most_mb} MB, but {path} is larger")
+
+
+def check_kind(path: str | os.PathLike[str], argument: str = "path") -> None:
+    """Refuse a device or a pipe, whose reader may wait for ever; what is not there is left to who opens it.
+
+    Raises
+    ------
+    ValueError
+        If it is one.
+    """
+    try:
+        mode = os.stat(path).st_mode
+    except (OSError, ValueError):  # not there, or no name
+        return
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise ValueError(f"{argument}: expected a file, but {path} is a device or a pipe")
 
 
 def file_bytes(path: str | os.PathLike[str], most_mb: int = MOST_MB, argument: str = "path") -> bytes:

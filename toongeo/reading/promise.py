@@ -11,6 +11,8 @@ from typing import ParamSpec, TypeVar
 
 import numpy as np
 
+from toongeo.reading.check_file import check_kind
+
 __all__ = ["promise", "promised"]
 
 _P = ParamSpec("_P")
@@ -78,7 +80,7 @@ def promise(path: object, expected: str, argument: str = "path", *, alone: bool 
 
 
 def promised(expected: str, argument: str = "path") -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
-    """:func:`promise` about a whole reader, whose first parameter is the path.
+    """:func:`promise` about a whole reader, whose first parameter is the path; neither of a device nor of a pipe.
 
     Examples
     --------
@@ -97,6 +99,7 @@ def promised(expected: str, argument: str = "path") -> Callable[[Callable[_P, _R
             path = args[0] if args else kwargs.get(argument)
             if args or argument in kwargs:
                 _check_name(path, argument)
+                check_kind(path, argument)  # type: ignore[arg-type]
             with promise(path, expected, argument):
                 return read(*args, **kwargs)
 

@@ -50,10 +50,11 @@ def test_silent_and_slow_peers_take_a_bounded_number_of_threads(folder, monkeypa
         b"GET / HTTP/1.1\r\n" + b"X: y\r\n" * 200 + b"\r\n",
         b"POST /ask/list HTTP/1.1\r\nContent-Length: -5\r\n\r\n",
         b"POST /ask/list HTTP/1.1\r\nContent-Length: 99999999999999\r\n\r\n",
+        b"GET http://[ HTTP/1.1\r\n\r\n",
         b"POST /ask/list HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\nffffffff\r\n",
     ],
 )
-def test_malformed_requests_are_answered_or_hung_up_on(server, line):
+def test_malformed_requests_are_answered_or_hung_up_on(server, line, capfd):
     with socket.create_connection((HOST, server.port), timeout=20) as sock:
         sock.sendall(line)
         answer = b""
@@ -62,6 +63,16 @@ def test_malformed_requests_are_answered_or_hung_up_on(server, line):
             assert len(answer) < 10_000
     assert not answer or re.search(rb"\b[45]\d\d\b", answer)
     assert is_served(server)
+    assert not capfd.readouterr().err  # no traceback where somebody works
+
+
+@pytest.mark.parametrize("length", ["9" * 5000, "65537", "4" * 12])
+def test_questions_that_are_too_long_are_refused_before_they_are_read(server, length, capfd):
+    head = f"POST /ask/list HTTP/1.1\r\nHost: {HOST}:{server.port}\r\nAuthorization: Bearer {server.token}\r\n"
+    with socket.create_connection((HOST, server.port), timeout=20) as sock:
+        sock.sendall(f"{head}Content-Type: application/json\r\nContent-Length: {length}\r\n\r\n".encode())
+        assert b" 413 " in sock.recv(4096)
+    assert not capfd.readouterr().err
 
 
 @pytest.mark.parametrize(

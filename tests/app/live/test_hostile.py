@@ -158,6 +158,13 @@ def test_there_is_nothing_but_the_page(server, path):
     sock.close()
 
 
+def test_a_target_that_is_no_address_is_refused_without_a_traceback(server, caplog):
+    sock, answer = raw(server, f"http://[?token={server.token}")
+    assert " 401 " in f"{answer} "
+    sock.close()
+    assert not caplog.records
+
+
 @pytest.mark.parametrize("port", [99_999, -1, 70_000, True, 1.5])
 def test_ports_that_are_none(glb, port):
     with pytest.raises(ValueError, match="port: expected 0"):

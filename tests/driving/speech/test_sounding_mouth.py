@@ -70,5 +70,15 @@ def test_no_sound_is_refused():
         sounding_mouth(np.zeros((2, 2)), RATE, np.zeros(1))
     with pytest.raises(ValueError, match="samples: expected finite numbers"):
         sounding_mouth(np.array([np.nan]), RATE, np.zeros(1))
-    with pytest.raises(ValueError, match="rate: expected > 0 Hz, got 0"):
+    for rate in (1, 999.0, 4_294_967_291, float("nan")):  # of damaged files: filters and takes would fill the memory
+        with pytest.raises(ValueError, match="rate: expected 1000 to 384000 Hz"):
+            sounding_mouth(np.ones(8000), rate, np.arange(3))
+    with pytest.raises(ValueError, match="rate: expected 1000 to 384000 Hz, got 0"):
         sounding_mouth(np.zeros(3), 0, np.zeros(1))
+
+
+def test_blocks_of_a_long_sound_are_the_whole(monkeypatch):
+    sound, times = np.random.default_rng(0).normal(size=9000), np.arange(0, 1, 0.02)
+    whole = sounding_mouth(sound, 8000, times)
+    monkeypatch.setattr("toongeo.driving.speech.sounding_mouth._BLOCK", 7)
+    np.testing.assert_array_equal(sounding_mouth(sound, 8000, times), whole)

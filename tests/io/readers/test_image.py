@@ -292,3 +292,32 @@ def test_strips_of_a_picture_are_the_whole(tmp_path, monkeypatch, mode):
     whole = read_image(tmp_path / "a.png")
     monkeypatch.setattr("toongeo.io.readers.read_image._STRIP", 23 * 5)
     np.testing.assert_array_equal(read_image(tmp_path / "a.png"), whole)
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [
+        (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "HEIC"),
+        (b"\0\0\0\x18ftypmif1\0\0\0\0mif1heic", "HEIC"),
+        (b"\0\0\0\x1cftypmif1\0\0\0\0mif1avifmiaf", "AVIF"),
+        (b"\0\0\0\x18ftypavif\0\0\0\0mif1miaf", "AVIF"),
+        (b"\0\0\0\x0cJXL \r\n\x87\n", "JPEG XL"),
+        (b"\0\0\0\x0cjP  \r\n\x87\n", "JPEG 2000"),
+        (b"\0\0\0\x18ftypisom\0\0\0\0", "a film"),
+        (b"8BPS\0\1", "a PSD"),
+        (b'<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg"/>', "an SVG"),
+        (b"\n<!DOCTYPE html><title>404</title>", "a web page"),
+        (b"version https://git-lfs.github.com/spec/v1\n", "a pointer of Git LFS"),
+    ],
+)
+def test_pictures_that_are_not_read_are_called_by_their_name(tmp_path, content, named):
+    (tmp_path / "a.jpg").write_bytes(content + bytes(64))
+    with pytest.raises(ValueError, match=rf"a\.jpg is {named}, which is not read: write it again as PNG or JPEG"):
+        read_image(tmp_path / "a.jpg")
+
+
+def test_pixels_of_32_bits_are_refused_even_if_they_are_small(tmp_path):
+    """Read as 16 bits they would be black."""
+    Image.fromarray(np.full((4, 4), 200, np.int32)).save(tmp_path / "a.tif")
+    with pytest.raises(ValueError, match="its pixels have 32 bits"):
+        read_image(tmp_path / "a.tif")

@@ -266,3 +266,49 @@ def test_schemes_are_refused_by_name(written):
         read_landmarks(path, scheme="wflw98")
     with pytest.raises(ValueError, match="scheme: expected one of 'ibug68', .*, got 'auto'"):
         ibug_points(FACE, "auto")
+
+
+def _comma(number):
+    return f"{number:.3f}".replace(".", ",")
+
+
+def _imglab_from_one():
+    parts = "".join(f"<part name='{k}' x='{x:.3f}' y='{y:.3f}'/>" for k, (x, y) in enumerate(FACE, start=1))
+    return f"<dataset><images><image file='a.jpg'><box>{parts}</box></image></images></dataset>"
+
+
+_POINTS = {"points": FACE[:, ::-1].tolist(), "connectivity": [[0, 1]]}
+_FOUND = {"image_id": 1, "face_kpts": np.column_stack([FACE, np.ones(68)]).ravel().tolist()}
+_NOT_FOUND = {"image_id": 1, "face_valid": False, "face_kpts": 204 * [0]}
+VARIATIONS = {
+    "decimal commas.csv": "".join(f"{_comma(x)};{_comma(y)}\n" for x, y in FACE),
+    "decimal commas.txt": "".join(f"{_comma(x)} {_comma(y)}\n" for x, y in FACE),
+    "decimal commas.pts": "n_points: 68\n{\n" + "".join(f"{_comma(x + 1)} {_comma(y + 1)}\n" for x, y in FACE) + "}\n",
+    "numbered.csv": "".join(f"{k};{_comma(x)};{_comma(y)}\n" for k, (x, y) in enumerate(FACE)),
+    "quoted.csv": "".join(f'"{x:.3f}","{y:.3f}"\n' for x, y in FACE),
+    "of R.csv": '"","x","y"\n' + "".join(f'"{k}",{x:.3f},{y:.3f}\n' for k, (x, y) in enumerate(FACE, start=1)),
+    "y before x.csv": "y,x\n" + "".join(f"{y:.3f},{x:.3f}\n" for x, y in FACE),
+    "OpenFace.txt": openface_video([(1, 0, 1, FACE)]),
+    "from one.xml": _imglab_from_one(),
+    "part of an ljson.json": json.dumps({"labels": [], "landmarks": _POINTS}),
+    "the first is not valid.json": json.dumps({"images": [{"id": 1}], "annotations": [_NOT_FOUND, _FOUND]}),
+}
+
+
+@pytest.mark.parametrize("name", VARIATIONS)
+def test_variations_that_programs_and_countries_have(written, name):
+    np.testing.assert_allclose(read_landmarks(written(name, VARIATIONS[name])), FACE, atol=1e-6)
+
+
+def test_faces_of_whole_numbers_in_a_line_are_no_decimal_commas(written):
+    pairs = [f"{x:.0f},{y:.0f}" for x, y in FACE]
+    for mark in " ;":
+        found = read_landmarks(written("a.txt", mark.join(pairs) + "\n"))
+        np.testing.assert_array_equal(found, FACE.round())
+
+
+def test_points_at_minus_one_are_missing(written):
+    points = FACE.copy()
+    points[3:5] = -1
+    for name, content in (("a.npy", points), ("a.json", json.dumps(points.tolist()))):
+        np.testing.assert_array_equal(np.flatnonzero(np.isnan(read_landmarks(written(name, content))[:, 0])), [3, 4])

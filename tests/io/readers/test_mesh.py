@@ -115,6 +115,16 @@ def test_files_are_not_opened_for_a_file(tmp_path, scene):
     assert read_mesh(tmp_path / "b.glb").meshes[0].texture is None
 
 
+def test_nothing_is_said_of_a_picture_that_a_file_names(tmp_path, caplog):
+    head = "ply\nformat ascii 1.0\ncomment TextureFile skin.png\nelement vertex 3\n"
+    rows = (
+        "property float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+    )
+    (tmp_path / "a.ply").write_text(head + rows + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    assert read_mesh(tmp_path / "a.ply").meshes[0].faces.tolist() == [[0, 1, 2]]
+    assert not caplog.records  # trimesh logs a traceback
+
+
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("damage", ["cut", "junk", "empty", "text"])
 def test_damaged_files_are_named(tmp_path, mesh, kind, damage):

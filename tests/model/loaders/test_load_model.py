@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from tests.model.loaders import layouts
-from toongeo.model import MorphableModel, load_model, model_format, save_model
+from toongeo.model import MorphableModel, default_model, load_model, model_format, save_model
 from toongeo.model.supply.outward import faces_inward
 
 NO_LANDMARKS = ("bfm2009", "bfm2017", "flame_pickle", "flame_archive", "gnm")
@@ -210,6 +210,60 @@ def test_facescape_without_statistics_takes_the_first_coefficient_for_the_mean(w
     assert np.linalg.norm(corners[1] - corners[0]) == pytest.approx(90)
     ratio = model.identity[1:].std() / known.identity[1:].std()
     np.testing.assert_allclose(model.identity[1:], ratio * known.identity[1:], rtol=1e-4, atol=1e-4)
+
+
+def test_colours_of_facescape_are_blue_first(written, tmp_path):
+    rng = np.random.default_rng(3)
+    mean, modes = rng.uniform(0, 255, (layouts.N, 3)), rng.normal(0, 20, (layouts.N, 3, 2))
+    with np.load(written("facescape"), allow_pickle=True) as z:
+        arrays = {name: z[name] for name in z.files if name != "sym_dict"}
+    core = modes.reshape(-1, 2)
+    np.savez(tmp_path / "coloured.npz", **arrays, color_bm_mean=mean.ravel(), color_bm_core=core)
+    model = load_model(tmp_path / "coloured.npz")
+    np.testing.assert_allclose(model.albedo_mean, mean[:, ::-1] / 255, atol=1e-6)
+    np.testing.assert_allclose(model.albedo, modes[:, ::-1].transpose(2, 0, 1) / 255, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"shape_bm_core": np.ones((6, 2))}, "shape_bm_core"),
+        ({"shape_bm_core": np.ones((7, 2, 2))}, "shape_bm_core"),
+        ({"id_mean": np.ones(3)}, "means and variances"),
+        ({"id_var": np.full(layouts.K + 1, -1.0)}, "means and variances"),
+        ({"id_mean": None, "lm_list_v16": None}, "68 landmarks"),
+        ({"id_mean": None, "lm_list_v16": np.arange(68) + layouts.N}, "68 landmarks"),
+    ],
+)
+def test_a_facescape_that_does_not_fit_together_is_refused(written, tmp_path, changed, told):
+    with np.load(written("facescape"), allow_pickle=True) as z:
+        arrays = {name: z[name] for name in z.files if name != "sym_dict"} | changed
+    np.savez(tmp_path / "bad.npz", **{name: value for name, value in arrays.items() if value is not None})
+    with pytest.raises(ValueError, match=told):
+        load_model(tmp_path / "bad.npz")
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "told"),
+    [
+        ("identity", lambda a: a[:, 1:], "identity: expected"),
+        ("faces", lambda a: a.astype(float), "faces: expected"),
+        ("mean", lambda a: np.where(a == a.max(), np.nan, a), "mean: expected finite"),
+        ("faces", lambda a: a + len(a), "faces: expected vertices in"),
+        ("landmarks", lambda a: a[:67], "landmarks: expected 68 rows"),
+        ("contour_lines", lambda a: a + 10**6, "contour_lines: expected numbers in range"),
+        ("contour_starts", lambda a: a[::-1], "contour_starts: expected 18 ascending"),
+        ("eye0_centre_modes", lambda a: a[1:], "eyes: expected modes"),
+        ("eye1_uv", lambda a: a[1:], "eyes: expected a mesh"),
+    ],
+)
+def test_a_file_of_ours_that_does_not_fit_together_is_refused(tmp_path, name, change, told):
+    save_model(default_model(), tmp_path / "good.npz")
+    with np.load(tmp_path / "good.npz") as z:
+        arrays = dict(z)
+    np.savez(tmp_path / "bad.npz", **arrays | {name: change(arrays[name])})
+    with pytest.raises(ValueError, match=told):
+        load_model(tmp_path / "bad.npz")
 
 
 def test_people_of_facewarehouse_span_the_modes(face, loaded):

@@ -92,7 +92,7 @@ def test_the_minimum_is_one(model, face):
     problem = starting_problem(model, face, FitOptions(solver=SolverOptions(tolerance=1e-14, max_passes=1)))
     apart = replace(problem.search, opposites=problem.search.opposites[:0])  # these are parted after a pass
     problem = replace(problem, search=apart)
-    fit = problem.solve("LD_LBFGS")
+    fit = problem.solve("gauss-newton")
     placed = visible_landmarks(problem.basis, problem.search.start[:145], problem.frame.rotation0)
     loss = problem.loss(placed, problem.options.prior_weight, problem.target.robust_weight)
     x = np.zeros(problem.unknowns.size)
@@ -109,10 +109,10 @@ def test_the_minimum_is_one(model, face):
     assert np.abs(free / np.sqrt(loss.curvature(x))).max() < 1e-6
 
 
-@pytest.mark.parametrize("algorithm", ["LD_VAR2", "LD_TNEWTON_PRECOND_RESTART", "LD_CCSAQ"])
+@pytest.mark.parametrize("algorithm", ["LD_LBFGS", "LD_VAR2", "LD_TNEWTON_PRECOND_RESTART", "LD_CCSAQ"])
 def test_other_optimizers_find_the_same_face(face, algorithm):
     options = FitOptions(solver=SolverOptions(tolerance=1e-12, max_passes=1, max_evaluations=20000))
-    expected, found = (fit_3dmm(None, face, algorithm=a, options=options) for a in ("LD_LBFGS", algorithm))
+    expected, found = (fit_3dmm(None, face, algorithm=a, options=options) for a in ("gauss-newton", algorithm))
     assert found.report.algorithm == algorithm
     assert found.report.loss == pytest.approx(expected.report.loss, rel=1e-4)
     np.testing.assert_allclose(coefficients(found), coefficients(expected), atol=0.02)
@@ -267,7 +267,7 @@ def test_the_result(model, face):
         FitOptions().landmark_weight * report.landmark_loss + report.prior_weight * report.prior_loss
     )
     assert report.prior_weight == FitOptions().prior_weight  # a photograph's misfit is what the prior expects
-    assert report.passes >= 1 and report.evaluations > 10 and report.seconds > 0
+    assert report.passes >= 1 and report.evaluations > 3 and report.seconds > 0
 
 
 def test_the_prior_counts_more_where_no_face_of_the_model_fits():
@@ -296,9 +296,9 @@ def test_a_single_pass_gives_no_opposite_expressions_either():
 
 
 def test_a_stop_after_few_evaluations_says_so(face):
-    report = fit_3dmm(None, face, options=FitOptions(solver=SolverOptions(max_evaluations=5, max_passes=1))).report
+    report = fit_3dmm(None, face, options=FitOptions(solver=SolverOptions(max_evaluations=3, max_passes=1))).report
     assert report.status == "MAXEVAL_REACHED"
-    assert report.evaluations <= 6
+    assert report.evaluations == 3
 
 
 def test_a_stop_after_too_long_says_so(face):
@@ -358,7 +358,7 @@ def test_pictures_that_are_not_bytes(face, value):
 
 
 def test_an_unknown_algorithm(face):
-    with pytest.raises(ValueError, match="algorithm: no algorithm 'LM'; known: .*LD_LBFGS"):
+    with pytest.raises(ValueError, match="algorithm: no algorithm 'LM'; known: gauss-newton, .*LD_LBFGS"):
         fit_3dmm(None, face, algorithm="LM")
 
 

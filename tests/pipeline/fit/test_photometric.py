@@ -170,7 +170,7 @@ def test_the_model_of_a_step_is_that_of_all_residuals_with_the_best_light(pass_l
     n, size = small.unknowns.size, len(z)
     normal[size:, size:] += np.diag(np.repeat(loss.penalty, 3) + 1e-9 * np.trace(normal[size:, size:]))
     whole = 2 * loss.photometric_weight * normal
-    whole[:n, :n] += loss.geometry.matrix(z[:n])
+    whole[:n, :n] += loss.geometry.normal(z[:n])[2]
     whole[n:size, n:size] += 2 * loss.albedo_weight * np.eye(size - n)
     model = loss.model(z)
     expected = np.linalg.inv(np.linalg.inv(whole)[:size, :size])  # of a block of the inverse: Schur's complement

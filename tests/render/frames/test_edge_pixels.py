@@ -10,13 +10,13 @@ def test_an_edge_is_where_texture_or_depth_jumps_on_both_sides_of_it():
     places[0, :, 4:] = 6.5  # texels
     edges = np.zeros((6, 8), bool)
     edges[:, 3:5] = True
-    np.testing.assert_array_equal(edge_pixels(places), edges)
+    np.testing.assert_array_equal(edge_pixels(*places, 0.5), edges)
     places[0] *= 0.9  # not far enough
-    assert not edge_pixels(places).any()
-    places[2, 3:] = -4.5  # px of depth
+    assert not edge_pixels(*places, 0.5).any()
+    places[2, 3:] = -2.25  # of which 0.5 are a pixel's width
     edges = np.zeros((6, 8), bool)
     edges[2:4] = True
-    np.testing.assert_array_equal(edge_pixels(places), edges)
+    np.testing.assert_array_equal(edge_pixels(*places, 0.5), edges)
 
 
 def test_the_faces_near_are_those_whose_box_holds_an_edge_pixel():

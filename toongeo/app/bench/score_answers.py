@@ -11,6 +11,8 @@ from scipy.stats import binomtest
 
 from toongeo.app.bench.blind_sheets import QUESTIONS
 from toongeo.app.bench.pair_sheets import FITTED
+from toongeo.reading.check_file import file_bytes
+from toongeo.reading.decoded import decoded
 
 __all__ = ["Preference", "preferences_text", "score_answers"]
 
@@ -97,7 +99,7 @@ def _preference(question: str, first: int, second: int, sides: tuple[str, str]) 
 def _sides(key: Path) -> tuple[tuple[str, str], dict[str, dict[str, str]]]:
     """The two sides; and sheet -> letter -> side."""
     try:
-        content = json.loads(key.read_text(encoding="utf-8"))
+        content = json.loads(file_bytes(key, argument="key"))
         first, second = content.get("sides", FITTED)
         pairs = {name: {letter: pair[letter] for letter in "AB"} for name, pair in content["pairs"].items()}
     except (ValueError, KeyError, TypeError, AttributeError):
@@ -110,7 +112,7 @@ def _sides(key: Path) -> tuple[tuple[str, str], dict[str, dict[str, str]]]:
 def _answered(path: Path) -> list[tuple[str, str, str, str]]:
     """Where it stands, picture, question and answer of each line with an answer."""
     try:
-        rows = list(csv.reader(path.read_text(encoding="utf-8-sig").splitlines()))
+        rows = list(csv.reader(decoded(file_bytes(path, argument="answers")).splitlines()))
     except (UnicodeDecodeError, csv.Error) as error:
         raise ValueError(f"answers: expected a CSV file, but {path} is not ({error})") from error
     if not rows or tuple(cell.strip() for cell in rows[0]) != _COLUMNS:

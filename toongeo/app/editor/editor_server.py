@@ -10,10 +10,9 @@ import threading
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
-from urllib.parse import parse_qs, urlsplit
 
 from toongeo.app.editor.protocols import Session
-from toongeo.app.loopback import HOST, check_port, refusal
+from toongeo.app.loopback import HOST, check_port, path_and_token, refusal
 from toongeo.io.editor_page import editor_page
 
 __all__ = ["LARGEST", "EditorServer"]
@@ -87,14 +86,14 @@ class _Handler(BaseHTTPRequestHandler):
     timeout = _PATIENCE
 
     def do_GET(self) -> None:
-        path = urlsplit(self.path)
-        given = parse_qs(path.query).get("token", [""])[0] if path.path == "/" else self._bearer()
+        path, token = path_and_token(self.path)
+        given = token if path == "/" else self._bearer()
         if self._is_refused(given):
             return
-        if path.path == "/":
+        if path == "/":
             self._reply(HTTPStatus.OK, "text/html; charset=utf-8", self.server.page.encode())
             return
-        _, _, number = path.path.partition("/picture/")
+        _, _, number = path.partition("/picture/")
         if not (
             number.isascii() and number.isdigit() and len(number) < 8 and int(number) < self.server.session.n_pictures
         ):
@@ -108,7 +107,7 @@ class _Handler(BaseHTTPRequestHandler):
         length = self.headers.get("Content-Length", "")
         if not (length.isascii() and length.isdigit()) or self.headers.get_content_type() != "application/json":
             self._refuse(HTTPStatus.BAD_REQUEST, "expected JSON of a known length\n")
-        elif int(length) > LARGEST:
+        elif len(length) > 9 or int(length) > LARGEST:  # Python refuses to read 5,000 digits
             self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"expected at most {LARGEST} bytes\n")
         else:
             body = self.rfile.read(int(length))
@@ -121,7 +120,7 @@ class _Handler(BaseHTTPRequestHandler):
             raise ValueError(f"expected JSON, but {error}") from error
         if not isinstance(message, dict):
             raise ValueError("expected an object")
-        answer = self.server.session.answer(urlsplit(self.path).path.removeprefix("/ask/"), message)
+        answer = self.server.session.answer(path_and_token(self.path)[0].removeprefix("/ask/"), message)
         self._reply(HTTPStatus.OK, "application/json", json.dumps(answer, allow_nan=False).encode())
 
     def _try(self, reply: Any) -> None:

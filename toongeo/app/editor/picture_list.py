@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from toongeo.app.check_output import check_output
+from toongeo.app.commands.path_is import path_is
 from toongeo.arrays import Bytes, Floats
 from toongeo.io import read_image, read_landmarks, write_landmarks
 
@@ -50,7 +51,8 @@ class PictureList:
         self._paths = [path]
         img = read_image(path)
         if given is not None:
-            read_landmarks(given, size=img, face=face)
+            with path_is("landmarks"):
+                read_landmarks(given, size=img, face=face)
         if output is not None:
             self._check(path, output)
 

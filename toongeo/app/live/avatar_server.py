@@ -9,11 +9,10 @@ import secrets
 from http import HTTPStatus
 from pathlib import Path
 from typing import Any
-from urllib.parse import parse_qs, urlsplit
 
 from toongeo.app.glb_page import glb_page, read_avatar_glb, target_names
 from toongeo.app.live.read_message import read_message
-from toongeo.app.loopback import HOST, check_port, refusal
+from toongeo.app.loopback import HOST, check_port, path_and_token, refusal
 from toongeo.driving.websockets_adapter import load_websockets
 
 __all__ = ["AvatarServer", "LARGEST", "PAGE", "acknowledged"]
@@ -98,7 +97,7 @@ class AvatarServer:
         """None lets a WebSocket begin; anything else is an answer over HTTP."""
         if (refusal := self._refusal(request)) is not None:
             return connection.respond(*refusal)
-        path = urlsplit(request.path).path
+        path, _ = path_and_token(request.path)
         if path in (PAGE, _SOURCE):
             if len(self._pages) + len(self._sources) < _MOST_PEERS:
                 return None
@@ -121,12 +120,12 @@ class AvatarServer:
         return response
 
     def _refusal(self, request: Any) -> tuple[HTTPStatus, str] | None:
-        given = parse_qs(urlsplit(request.path).query).get("token", [""])[0]
+        _, given = path_and_token(request.path)
         named, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
         return refusal(named, origins, given, port=self.port, token=self.token)
 
     async def _talk(self, connection: Any) -> None:
-        is_page = urlsplit(connection.request.path).path == PAGE
+        is_page = path_and_token(connection.request.path)[0] == PAGE
         members = self._pages if is_page else self._sources
         members.append(connection)
         if is_page:

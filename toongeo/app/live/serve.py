@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from toongeo.app.commands.path_is import path_is
 from toongeo.app.live.avatar_server import AvatarServer
 from toongeo.app.read_take import read_take
 from toongeo.arrays import Bytes, Floats
@@ -55,7 +56,8 @@ def serve(
     OSError, ValueError
         If a file cannot be read or is not what it should be, there is no such camera, or the port is taken.
     """
-    take = None if weights is None else read_take(weights).resampled(_FPS)
+    with path_is("weights"):
+        take = None if weights is None else read_take(weights).resampled(_FPS)
     seen = None if camera is None else open_camera(camera)
     server = AvatarServer(avatar, port)
 

@@ -9,6 +9,8 @@ from toongeo.app.video.write_video import check_video
 
 __all__ = ["FilmOptions"]
 
+_MOST_PROCESSES = 61  # that Windows can wait for; each takes some 200 MB
+
 
 @dataclass(frozen=True)
 class FilmOptions:
@@ -39,4 +41,6 @@ class FilmOptions:
         """Refuse, before the work, what could not be written."""
         if self.actor not in (None, *get_args(Actor)):
             raise ValueError(f"actor: expected {' or '.join(get_args(Actor))}, got {self.actor!r}")
+        if self.processes is not None and not 1 <= self.processes <= _MOST_PROCESSES:
+            raise ValueError(f"processes: expected 1 to {_MOST_PROCESSES}, got {self.processes}")
         check_video(output, film_size(self.size, self.actor), self.fps)

@@ -13,10 +13,12 @@ from toongeo.app.video.opencv_encoder import OpencvEncoder
 from toongeo.app.video.pyav_encoder import PyavEncoder
 from toongeo.app.video.sound import Sound
 from toongeo.io import has_pyav
+from toongeo.render.picture_size import picture_size
 
 __all__ = ["VIDEO_SUFFIXES", "check_video", "write_video"]
 
 VIDEO_SUFFIXES = (".mp4", ".webm")
+_SAMPLES = 2  # a side of each pixel that are drawn
 
 
 def write_video(
@@ -89,6 +91,7 @@ def check_video(path: Path, size: int | tuple[int, int], fps: float) -> tuple[in
         raise ValueError(f"output: expected a name that ends in {', '.join(VIDEO_SUFFIXES)}, got {path}")
     if min(height, width) < 16 or height % 2 or width % 2:
         raise ValueError(f"size: expected an even number of px, at least 16, got {size}")
+    picture_size((height, width), _SAMPLES)
     if not (np.isfinite(fps) and 1 <= fps <= 240):
         raise ValueError(f"fps: expected 1 to 240 frames a second, got {fps}")
     if path.is_dir():

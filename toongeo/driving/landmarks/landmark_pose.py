@@ -11,7 +11,7 @@ import numpy as np
 
 from toongeo.arrays import Floats
 from toongeo.driving.landmark_rig import LandmarkRig
-from toongeo.driving.landmarks.bounded_quadratic import bounded_quadratic
+from toongeo.geometry.operators.bounded_quadratic import bounded_quadratic
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
 from toongeo.geometry.scaled_orthographic_pose import scaled_orthographic_pose
 

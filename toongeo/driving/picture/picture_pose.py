@@ -12,9 +12,9 @@ import cv2
 import numpy as np
 
 from toongeo.arrays import Floats
-from toongeo.driving.landmarks.bounded_quadratic import bounded_quadratic
 from toongeo.driving.landmarks.landmark_pose import LandmarkPose
 from toongeo.driving.picture.skin_samples import BLURS_PX, Grey, SkinSamples, blurred, posed_px
+from toongeo.geometry.operators.bounded_quadratic import bounded_quadratic
 from toongeo.geometry.rotations.rotation_vectors import rotation_matrix
 from toongeo.render import sample_image
 

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
 from toongeo.arrays import Floats
+from toongeo.driving.table.expression_key import expression_key
 from toongeo.driving.take import Take
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
 __all__ = ["target_columns"]
 
-_SIDES = {"l": "left", "r": "right"}
-
 
 def target_columns(take: Take, targets: Iterable[str]) -> dict[str, Floats]:
     """Weights (f,) over time of those targets that are expressions.
 
-    Names are ours, ARKit's or Live Link Face's, in any case, also with ``_L`` and ``_R`` for the sides. A target that
-    both sides share gets their mean.
+    Names are ours, ARKit's or Live Link Face's, in any of the ways of :func:`expression_key`. A target that both sides
+    share gets their mean.
 
     Raises
     ------
@@ -33,11 +31,13 @@ def target_columns(take: Take, targets: Iterable[str]) -> dict[str, Floats]:
     {'eyeBlink_L': [1.0, 0.0]}
     """
     names = list(targets)
-    known = {name.lower(): own for scheme in ("live_link", "arkit") for name, own in SCHEMES[scheme].items() if own}
-    known |= {name.lower(): {name: 1.0} for name in EXPRESSIONS}
+    known = {
+        expression_key(name): own for scheme in ("live_link", "arkit") for name, own in SCHEMES[scheme].items() if own
+    }
+    known |= {expression_key(name): {name: 1.0} for name in EXPRESSIONS}
     columns = {}
     for name in names:
-        plain = re.sub("_([lr])$", lambda side: _SIDES[side[1]], name.lower())
+        plain = expression_key(name)
         if plain in known:
             columns[name] = take.weights[:, [EXPRESSIONS.index(own) for own in known[plain]]].mean(axis=1)
     if not columns:

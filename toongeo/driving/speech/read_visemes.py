@@ -11,6 +11,8 @@ import numpy as np
 
 from toongeo.driving.speech.viseme_table import AZURE, RHUBARB, oculus_viseme
 from toongeo.driving.speech.viseme_track import VisemeTrack
+from toongeo.reading.decoded import decoded
+from toongeo.reading.promise import promised
 
 __all__ = ["read_visemes"]
 
@@ -19,6 +21,7 @@ _LAST = 0.1  # s that a viseme lasts of which only the beginning is told, and no
 _Row = tuple[float, float | None, str]  # start, end if it is told, viseme
 
 
+@promised("timings of visemes")
 def read_visemes(path: str | os.PathLike[str]) -> VisemeTrack:
     """Which viseme is spoken when, as lip-sync programs and speech services tell it.
 
@@ -55,7 +58,7 @@ def read_visemes(path: str | os.PathLike[str]) -> VisemeTrack:
     ('sil', 'E', 'sil')
     """
     path = Path(path)
-    text = path.read_bytes().decode("utf-8-sig", errors="replace")
+    text = decoded(path.read_bytes(), "replace")
     try:
         rows = _read_json(text) if text.lstrip()[:1] in ("{", "[") else _read_table(text)
         return _track(rows)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.linalg
 import scipy.ndimage
@@ -13,6 +15,8 @@ from toongeo.model.expression_schemes import EXPRESSIONS
 __all__ = ["sounding_mouth"]
 
 _RATE = 10_000  # Hz: two formants of every voice lie below half of it (Markel and Gray 1976)
+_RATES = (1_000, 384_000)  # Hz: below, no formant is left; above, no recorder goes, and filters fill the memory
+_BLOCK = 4096  # windows that are looked at at once: some 30 MB, however long the sound is
 _WINDOW, _HOP = 0.025, 0.010  # s, as in most analyses of speech
 _ORDER = 12  # two poles a kHz, and two for the source (Markel and Gray 1976)
 _WIDEST = 400.0  # Hz: a resonance that is broader is no formant
@@ -51,7 +55,7 @@ def sounding_mouth(samples: Floats, rate: float, times: Floats) -> Floats:
     Raises
     ------
     ValueError
-        If samples are not finite, or the rate is not positive.
+        If samples are not finite, or the rate is none of a recorder.
 
     References
     ----------
@@ -60,16 +64,16 @@ def sounding_mouth(samples: Floats, rate: float, times: Floats) -> Floats:
     sound = np.asarray(samples, np.float64)
     if sound.ndim != 1 or not np.isfinite(sound).all():
         raise ValueError(f"samples: expected finite numbers (n,), got shape {sound.shape}")
-    if not (np.isfinite(rate) and rate > 0):
-        raise ValueError(f"rate: expected > 0 Hz, got {rate!r}")
+    if not _RATES[0] <= rate <= _RATES[1]:
+        raise ValueError(f"rate: expected {_RATES[0]} to {_RATES[1]} Hz, got {rate!r}")
     weights = np.zeros((len(times), len(EXPRESSIONS)))
     sound = _resampled(sound - sound.mean() if len(sound) else sound, rate)
     windows = _windows(sound)
-    level = np.sqrt((windows**2).mean(axis=1))
+    level = _in_blocks(lambda some: np.sqrt((some**2).mean(axis=1)), windows)
     if not level.max(initial=0.0) > _NOTHING * np.abs(samples).max(initial=0.0):
         return weights
     loud = np.clip((20 * np.log10(np.maximum(level / level.max(), 1e-9)) - _QUIET_DB) / (_LOUD_DB - _QUIET_DB), 0, 1)
-    first, second = _formants(windows, _voiced(windows) & (loud > 0))
+    first, second = _formants(windows, _in_blocks(_voiced, windows) & (loud > 0))
     opened = loud * np.clip((first - _F1[0]) / (_F1[1] - _F1[0]), 0.15, 1)
     rounded = loud * np.clip((_F2[1] - second) / (_F2[1] - _F2[0]), 0, 1)
     spread = loud * np.clip((second - _F2[2]) / (_F2[3] - _F2[2]), 0, 1)
@@ -100,6 +104,10 @@ def _windows(sound: Floats) -> Floats:
     return np.lib.stride_tricks.sliding_window_view(padded, width)[::hop]
 
 
+def _in_blocks(of: Callable[[Floats], np.ndarray], windows: Floats) -> np.ndarray:
+    return np.concatenate([of(windows[k : k + _BLOCK]) for k in range(0, len(windows), _BLOCK)])
+
+
 def _voiced(windows: Floats) -> np.ndarray:
     """Whether each window repeats after a period of a voice."""
     size = 2 * windows.shape[1]
@@ -112,9 +120,9 @@ def _voiced(windows: Floats) -> np.ndarray:
 def _formants(windows: Floats, voiced: np.ndarray) -> tuple[Floats, Floats]:
     """First and second formant (w,), Hz, of a neutral tract; where there is no voice, those of voices around."""
     found = np.full((len(windows), 2), np.nan)
-    tapered = np.diff(windows, axis=1, prepend=0.0) * np.hamming(windows.shape[1])  # the lips' own slope is undone
+    taper = np.hamming(windows.shape[1])
     for k in np.flatnonzero(voiced):
-        resonances = _resonances(tapered[k])
+        resonances = _resonances(np.diff(windows[k], prepend=0.0) * taper)  # the lips' own slope is undone
         if len(resonances) >= 2:
             found[k] = resonances[:2]
     known = np.isfinite(found[:, 0])

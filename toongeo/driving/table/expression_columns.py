@@ -5,7 +5,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping
 
-from toongeo.driving.table.cells import Table
+from toongeo.driving.table.cells import Table, heading_key
+from toongeo.driving.table.expression_key import expression_key
 from toongeo.driving.table.times import TIME_COLUMNS
 from toongeo.model.expression_schemes import EXPRESSIONS, SCHEMES
 
@@ -17,24 +18,25 @@ _COUNT = "blendshapecount"  # tells nothing that the heading does not, and progr
 def expression_columns(table: Table) -> tuple[dict[str, int], tuple[str, ...]]:
     """Name in the heading's scheme -> column; and notes on what is left out.
 
-    Names are those of Live Link Face, which are ARKit's in capitals, or ours, in any case.
+    Names are those of Live Link Face, which are ARKit's in capitals, or ours, in any of the ways of
+    :func:`expression_key`.
 
     Raises
     ------
     ValueError
         If no column is an expression, or one is there twice.
     """
-    known = {name.lower(): name for name in (*EXPRESSIONS, *SCHEMES["live_link"])}
+    known = {expression_key(name): name for name in (*EXPRESSIONS, *SCHEMES["live_link"])}
     columns: dict[str, int] = {}
     strange = []
     for index, cell in enumerate(table.heading):
-        name = known.get(cell.lower())
+        name = known.get(expression_key(cell))
         if name in columns:
             raise ValueError(f"{table.path}: column {cell!r} is there twice")
         if name is not None:
             columns[name] = index
-        elif cell.lower() not in (_COUNT, *TIME_COLUMNS):
-            near = difflib.get_close_matches(cell.lower(), known, n=1)
+        elif heading_key(cell) not in (_COUNT, *TIME_COLUMNS):
+            near = difflib.get_close_matches(expression_key(cell), known, n=1)
             strange.append(f"{cell!r}" + (f" (did you mean {known[near[0]]}?)" if near else ""))
     if not any(SCHEMES["live_link"].get(name, True) for name in columns):
         raise ValueError(

@@ -1,6 +1,9 @@
 """Points of a part in another order than iBUG's: sides or edges exchanged, a row that runs backwards."""
 
+from functools import cache
+
 import numpy as np
+from numpy.typing import NDArray
 
 from toongeo.arrays import Floats
 from toongeo.io.landmarks.frontal_layout import frontal_layout
@@ -44,9 +47,7 @@ def order_doubts(points: Floats, pose: Floats) -> list[str]:
     """
     upright = points @ pose  # the face's own axes: x towards the subject's left, y down
     along, possible = _along(upright)
-    backwards = [
-        row for row in _ROWS if np.nansum(along[row[0] : row[1]]) < _BACKWARDS * np.nansum(possible[row[0] : row[1]])
-    ]
+    backwards = [row for row in _ROWS if along[row[0] : row[1]].sum() < _BACKWARDS * possible[row[0] : row[1]].sum()]
     doubts = []
     for part in _exchanged_parts(upright):
         all_rows, turned = (sum(row[2] == part for row in some) for some in (_ROWS, backwards))
@@ -64,8 +65,12 @@ def order_doubts(points: Floats, pose: Floats) -> list[str]:
 
 
 def _along(upright: Floats) -> tuple[Floats, Floats]:
-    """How far (67,) each point is from the one before it along the layout's step, and how far it could be."""
-    steps, expected = (np.diff(shape, axis=0) for shape in (upright, frontal_layout().points))
+    """How far (67,) each point is from the one before it along the layout's step, and how far it could be.
+
+    Both are zero where one of the two is missing.
+    """
+    steps, expected = (shape[1:] - shape[:-1] for shape in (upright, frontal_layout().points))
+    steps[np.isnan(steps)] = 0.0
     possible = np.linalg.norm(steps, axis=1) * np.linalg.norm(expected, axis=1)
     return np.einsum("ij,ij->i", steps, expected), possible
 
@@ -74,5 +79,14 @@ def _exchanged_parts(upright: Floats) -> list[str]:
     layout = frontal_layout()
     # Towards the subject's left: negative in a part whose sides are exchanged.
     sideways = np.sign(layout.points[:, 0]) * (upright - upright[layout.mirror])[:, 0]
-    parts = np.array(layout.parts)
-    return [part for part in dict.fromkeys(layout.parts) if np.nansum(sideways[parts == part]) < 0]
+    sideways[np.isnan(sideways)] = 0.0
+    names, part_of = _parts()
+    sums = np.bincount(part_of, sideways)
+    return [part for part, total in zip(names, sums, strict=True) if total < 0]
+
+
+@cache
+def _parts() -> tuple[tuple[str, ...], NDArray[np.int64]]:
+    """Names of the layout's parts, and the part (68,) of each point."""
+    names = tuple(dict.fromkeys(frontal_layout().parts))
+    return names, np.array([names.index(part) for part in frontal_layout().parts])

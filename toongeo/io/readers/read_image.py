@@ -18,6 +18,21 @@ __all__ = ["read_image"]
 # Only decoders that need no outside program; Pillow would otherwise try every format it knows on a
 # stranger's file.
 _FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "GIF", "TIFF")
+# How what people take for pictures begins, that is to be called by its name.
+_OTHERS = (
+    ("AVIF", b".{4}ftyp.{0,24}avi[fs]"),
+    ("HEIC", b".{4}ftyp(hei[cmsx]|hev[cmsx]|mif1|msf1)"),
+    ("JPEG XL", rb"\xff\x0a|.{4}JXL "),
+    ("JPEG 2000", rb".{4}jP  |\xff\x4f\xff\x51"),
+    ("a film", rb".{4}ftyp|\x1aE\xdf\xa3|RIFF.{4}AVI "),
+    ("a PSD", b"8BPS"),
+    ("an SVG", rb"\s*(<\?xml.{0,500})?(<!--.{0,500}-->\s*)?<svg"),
+    ("a PDF", b"%PDF"),
+    ("a web page", rb"(?i)\s*<(!doctype html|html)"),
+    ("a pointer of Git LFS", b"version https://git-lfs"),
+    ("an EXR", rb"\x76\x2f\x31\x01"),
+)
+_BITS = 258  # TIFF's tag BitsPerSample
 _EXPECTED = f"a picture ({', '.join(_FORMATS)})"
 _MAX_PIXELS = 2**26  # 8192 x 8192, more than most cameras give; some 0.7 GB while it is read
 _STRIP = 2**20  # pixels that are composited at once, so that a few MB do, whatever the picture has
@@ -85,7 +100,11 @@ def read_image(path: str | os.PathLike[str], *, max_pixels: int = _MAX_PIXELS) -
             f"path: expected a picture of at most {max_pixels / 1e6:.0f} Mpx, but {path} has {got}"
         ) from None
     except Image.UnidentifiedImageError as error:
-        raise ValueError(f"path: expected {_EXPECTED}, but {path} is none of these") from error
+        kind = next((name for name, start in _OTHERS if re.match(start, content, re.DOTALL)), None)
+        got = (
+            "none of these, or damaged" if kind is None else f"{kind}, which is not read: write it again as PNG or JPEG"
+        )
+        raise ValueError(f"path: expected {_EXPECTED}, but {path} is {got}") from error
     if pixels.size == 0:
         raise ValueError(f"path: expected a picture, but {path} has zero size {pixels.shape[:2]}")
     return pixels
@@ -107,6 +126,8 @@ def _of_unended(content: bytes, path: object) -> NDArray[np.uint8]:
 
 def _pixels(image: Image.Image) -> NDArray[np.uint8]:
     """(H, W, 3) of an opened picture as it is meant to be seen, composited strip by strip."""
+    if image.mode == "I" and 32 in getattr(image, "tag_v2", {}).get(_BITS, ()):
+        raise ValueError("its pixels have 32 bits; 8 or 16 bit expected")
     image.load()
     image = ImageOps.exif_transpose(image)
     pixels = np.empty((image.height, image.width, 3), np.uint8)

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
+import re
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from toongeo.arrays import Bytes, Floats
-from toongeo.colour.srgb import linear_to_srgb
+from toongeo.io.readers.glb.glb_meshes import glb_meshes
 from toongeo.io.readers.read_glb import read_glb
 from toongeo.io.readers.read_obj import read_obj
 from toongeo.io.scene import Scene, SceneMesh
@@ -22,6 +22,11 @@ if TYPE_CHECKING:
 
 __all__ = ["MESH_SUFFIXES", "read_mesh"]
 
+# Required extensions of glTF that are understood, or change nothing of a mesh and its base colour.
+_KNOWN = re.compile(
+    "KHR_(mesh_quantization|texture_transform|lights_punctual|animation_pointer|materials_(?!pbrSpec).*)$"
+    "|EXT_texture_webp$|VRM"
+)
 MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off", ".glb")
 
 
@@ -29,9 +34,10 @@ MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off", ".glb")
 def read_mesh(path: str | os.PathLike[str]) -> Scene:
     """Read triangle meshes with their texture coordinates and textures, every vertex in its place in the file.
 
-    OBJ goes through :func:`read_obj` and is one mesh: trimesh's reader repeats or reorders its vertices. All else goes
-    through ``trimesh.load`` without processing, so that nothing is merged. PLY and GLB repeat vertices along the seams
-    of a texture, STL at every triangle; :func:`toongeo.rig_mesh` can take them for one (``weld=True``).
+    OBJ goes through :func:`read_obj` and is one mesh: trimesh's reader repeats or reorders its vertices. GLB goes
+    through :func:`read_glb`: trimesh's knows no sparse and no normalized arrays. The rest goes through ``trimesh.load``
+    without processing, so that nothing is merged. PLY and GLB repeat vertices along the seams of a texture, STL at
+    every triangle; :func:`toongeo.rig_mesh` can take them for one (``weld=True``).
 
     Parameters
     ----------
@@ -51,7 +57,8 @@ def read_mesh(path: str | os.PathLike[str]) -> Scene:
     OSError
         If the file is missing or cannot be read.
     ValueError
-        If the suffix is another, the file is damaged, has no triangles, or its numbers are not finite.
+        If the suffix is another, the file is damaged, has no triangles, its numbers are not finite, or a GLB requires
+        an extension that is not known here.
 
     Examples
     --------
@@ -67,11 +74,8 @@ def read_mesh(path: str | os.PathLike[str]) -> Scene:
         raise ValueError(f"path: expected a name that ends in {', '.join(MESH_SUFFIXES)}, got {path}")
     if suffix == ".obj":
         return _obj_scene(path)
-    content = file_bytes(path)
-    if suffix == ".glb":
-        read_glb(path)  # says what it is packed by, and bounds what it announces
     try:
-        meshes = _meshes(content, suffix[1:])
+        meshes = _glb_meshes(path) if suffix == ".glb" else _meshes(file_bytes(path), suffix[1:])
     except ImportError as error:  # a text that is no mesh is taken for a kind that needs a package
         raise ValueError(f"path: expected a mesh file, but {path} is damaged or none ({error})") from error
     if not meshes:
@@ -87,58 +91,35 @@ def _obj_scene(path: Path) -> Scene:
     return Scene((SceneMesh("mesh", read.vertices, faces),))
 
 
+def _glb_meshes(path: Path) -> list[SceneMesh]:
+    document = read_glb(path)
+    strange = [name for name in document.json.get("extensionsRequired", []) if not _KNOWN.match(name)]
+    if strange:
+        raise ValueError(f"path: expected a GLB that plain readers understand, but {path} requires {strange[0]}")
+    return glb_meshes(document)
+
+
 def _meshes(content: bytes, kind: str) -> list[SceneMesh]:
     import trimesh  # only here: it takes longer to import than an OBJ to read
 
-    # From memory, so that a file cannot name others to be opened.
-    scene = trimesh.load_scene(BytesIO(content), file_type=kind, process=False)
-    found = []
-    for name, geometry in scene.geometry.items():
-        if not isinstance(geometry, trimesh.Trimesh) or not len(geometry.faces):
-            continue
-        nodes = sorted(node for node in scene.graph.nodes_geometry if scene.graph[node][1] == name)
-        for node in nodes:
-            label = f"{name}.{node}" if len(nodes) > 1 else name
-            found.append(_scene_mesh(geometry, scene.graph[node][0], label, keep_normals=kind == "glb"))
-    return found
+    # From memory, so that a file cannot name others to be opened; of a picture that is named trimesh shows a traceback.
+    log = trimesh.util.log
+    before, log.disabled = log.disabled, True
+    try:
+        scene = trimesh.load_scene(BytesIO(content), file_type=kind, process=False)
+    finally:
+        log.disabled = before
+    geometries = [(name, mesh) for name, mesh in scene.geometry.items() if isinstance(mesh, trimesh.Trimesh)]
+    return [_scene_mesh(mesh, name) for name, mesh in geometries if len(mesh.faces)]
 
 
-def _scene_mesh(mesh: trimesh.Trimesh, place: Floats, name: str, *, keep_normals: bool) -> SceneMesh:
-    """A mesh where its node puts it; a mirror turns its triangles over."""
-    vertices, faces = np.array(mesh.vertices, np.float64), np.array(mesh.faces, np.int64)
-    if not np.array_equal(place, np.eye(4)):
-        vertices = vertices @ place[:3, :3].T + place[:3, 3]
-    if np.linalg.det(place[:3, :3]) < 0:
-        faces = faces[:, ::-1]
+def _scene_mesh(mesh: trimesh.Trimesh, name: str) -> SceneMesh:
     uv = getattr(mesh.visual, "uv", None)
-    material = getattr(mesh.visual, "material", None)
-    texture = None if uv is None else _texture(material)
+    picture = getattr(getattr(mesh.visual, "material", None), "image", None)
     return SceneMesh(
         name=name,
-        vertices=vertices,
-        faces=faces,
+        vertices=np.array(mesh.vertices, np.float64),
+        faces=np.array(mesh.faces, np.int64),
         uv=None if uv is None else np.array(uv, np.float64)[:, :2],
-        normals=_normals(mesh, place) if keep_normals else None,
-        texture=texture,
-        color=_color(material),
+        texture=None if uv is None or picture is None else np.array(picture.convert("RGB")),
     )
-
-
-def _normals(mesh: trimesh.Trimesh, place: Floats) -> Floats | None:
-    """Those of the file, which know nothing of its seams; None if one has no direction."""
-    normals = np.asarray(mesh.vertex_normals) @ np.linalg.inv(place[:3, :3])
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return normals / length if (length > 0).all() else None
-
-
-def _texture(material: Any) -> Bytes | None:
-    picture = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
-    return None if picture is None else np.array(picture.convert("RGB"))
-
-
-def _color(material: Any) -> tuple[float, float, float]:
-    factor = getattr(material, "baseColorFactor", None)
-    if factor is None:
-        return (1.0, 1.0, 1.0)
-    red, green, blue = linear_to_srgb(np.asarray(factor, np.float64)[:3] / 255)  # trimesh keeps them as bytes
-    return float(red), float(green), float(blue)

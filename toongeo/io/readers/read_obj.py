@@ -1,6 +1,5 @@
 """A Wavefront OBJ file, its vertices in their order."""
 
-import io
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -11,6 +10,7 @@ import numpy as np
 from toongeo._brief_repr import brief_repr
 from toongeo.arrays import Floats, Integers
 from toongeo.reading.check_file import file_bytes
+from toongeo.reading.decoded import decoded
 from toongeo.reading.promise import promised
 
 __all__ = ["ObjData", "read_obj"]
@@ -92,7 +92,7 @@ def read_obj(path: str | os.PathLike[str]) -> ObjData:
     """
     # Bytes that are not UTF-8 occur in names and comments of old files, where they do no harm.
     content = file_bytes(path, _MOST_MB)
-    text = io.TextIOWrapper(io.BytesIO(content), "utf-8-sig", errors="replace").read().replace("\\\n", " ")
+    text = decoded(content, "replace").replace("\r\n", "\n").replace("\r", "\n").replace("\\\n", " ")
     lines = text.splitlines()
     found = {"v": _Rows(3), "vt": _Rows(2), "f": _Rows(sys.maxsize)}
     named: list[int] = []

@@ -11,10 +11,12 @@ import scipy.io.wavfile
 from numpy.typing import NDArray
 
 from toongeo.io.pyav_adapter import load_pyav
+from toongeo.reading.promise import promised
 
 __all__ = ["read_sound"]
 
 
+@promised("a sound")
 def read_sound(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], float]:
     """Samples (n,), -1 to 1, the mean of all channels, and their rate in Hz.
 

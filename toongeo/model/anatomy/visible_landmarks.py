@@ -38,11 +38,12 @@ def landmarks_seen(
     basis: LandmarkBasis, points: NDArray[np.float64], rotation: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """`visible_landmarks` of any shape, given by its points (k, 3) at the vertices of ``basis``."""
-    facing = _towards(points, basis.fan, rotation[2])[basis.line_rows]
+    rows = basis.line_rows
+    turned = _towards(points, basis.fan, rotation[2])[rows] <= 0
+    last = np.append(basis.line_starts[1:], len(rows)) - 1
+    first = np.minimum.reduceat(np.where(turned, np.arange(len(rows)), len(rows)), basis.line_starts)
     landmarks = basis.landmarks.copy()
-    for k, line, start in zip(PARTS["jaw"], basis.lines, basis.line_starts, strict=True):
-        turned = facing[start : start + len(line)] <= 0
-        landmarks[k] = line[turned.argmax()] if turned.any() else line[-1]
+    landmarks[PARTS["jaw"]] = basis.vertices[rows[np.minimum(first, last)]]
     return landmarks
 
 

@@ -13,6 +13,7 @@ from toongeo.model.ibug68 import PARTS
 from toongeo.model.loaders.files.read_pickle import plain, unpickled
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.model.supply.outline_paths import outline_landmarks
+from toongeo.reading.check_file import file_bytes
 from toongeo.reading.promise import promise
 from toongeo.reading.read_npz import read_npz
 
@@ -81,7 +82,7 @@ def _nearest(points: NDArray[np.float64], model: MorphableModel) -> NDArray[np.i
 def _table(path: Path) -> dict[str, Any]:
     if path.suffix == ".npz":
         return read_npz(path, expected="a table of 68 landmarks", argument="landmarks")
-    content = path.read_bytes()
+    content = file_bytes(path)
     if path.suffix == ".npy":  # an array of one object: behind its header stands a pickle
         length = int.from_bytes(content[8:10], "little")
         content = content[10 + length :]

@@ -19,6 +19,7 @@ from toongeo.model.loaders.load_ict_folder import ict_folder, load_ict_folder
 from toongeo.model.loaders.load_shapes import load_shapes
 from toongeo.model.loaders.save_model import is_own_model, load_own_model
 from toongeo.model.morphable_model import MorphableModel
+from toongeo.reading.check_file import check_kind
 
 __all__ = ["FORMATS", "Format", "load_model", "model_format"]
 
@@ -132,6 +133,7 @@ def model_format(path: Path) -> Format:
         if list(path.glob("*.obj")):
             return "blendshapes"
     else:
+        check_kind(path)
         with open(path, "rb") as file:
             head = file.read(128)
         if head.startswith(b"PK"):

@@ -13,6 +13,7 @@ from toongeo.model.default_model import default_model
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
+from toongeo.pipeline.fit.losses.gauss_newton import GAUSS_NEWTON
 from toongeo.pipeline.fit.photometric_fit import photometric_fit
 from toongeo.pipeline.fit.problem.fit_task import check_call, fit_task
 from toongeo.pipeline.landmarks.given_or_found import given_or_found
@@ -26,7 +27,7 @@ def fit_3dmm(
     landmarks: ArrayLike | None = None,
     *,
     model: MorphableModel | None = None,
-    algorithm: str = "LD_LBFGS",
+    algorithm: str = GAUSS_NEWTON,
     options: FitOptions | None = None,
     regressor: Regressor | None = None,
     photometric: bool = False,
@@ -55,8 +56,8 @@ def fit_3dmm(
     model : MorphableModel, optional
         `default_model` if None.
     algorithm : str
-        Any optimizer of nlopt by name; those without derivatives (``LN_``, ``GN_``) are hopeless at this
-        size.
+        ``"gauss-newton"``, whose steps end at the minimum of a quadratic model in the bounds, or any optimizer of
+        nlopt by name (``"LD_LBFGS"``); those without derivatives (``LN_``, ``GN_``) are hopeless at this size.
     options : FitOptions, optional
         Weights and limits.
     regressor : Regressor, optional
@@ -86,7 +87,7 @@ def fit_3dmm(
     References
     ----------
     Pan et al. 2024, "Generating animatable 3D cartoon faces from single portraits", section 3.1, Eq. 1, 3, 4,
-    6. Bounded L-BFGS: J. Nocedal 1980, in nlopt by S. G. Johnson after L. Lukšan.
+    6. The minimiser: J. Nocedal, S. J. Wright, "Numerical Optimization", 2nd ed., sections 10.3 and 16.7.
 
     Examples
     --------

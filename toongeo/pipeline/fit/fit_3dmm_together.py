@@ -14,6 +14,7 @@ from toongeo.model.default_model import default_model
 from toongeo.model.morphable_model import MorphableModel
 from toongeo.pipeline.fit.face_fit import FaceFit
 from toongeo.pipeline.fit.fit_options import FitOptions, changed_options
+from toongeo.pipeline.fit.losses.gauss_newton import GAUSS_NEWTON
 from toongeo.pipeline.fit.problem.fit_task import check_call, fit_task
 from toongeo.pipeline.fit.problem.joint_fit import joint_fit
 from toongeo.protocols import Regressor
@@ -26,7 +27,7 @@ def fit_3dmm_together(
     landmarks: Sequence[ArrayLike],
     *,
     model: MorphableModel | None = None,
-    algorithm: str = "LD_LBFGS",
+    algorithm: str = GAUSS_NEWTON,
     options: FitOptions | None = None,
     regressor: Regressor | None = None,
     **changes: Any,

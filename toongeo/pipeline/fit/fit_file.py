@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from toongeo.io import atomic_write
+from toongeo.reading.check_file import file_bytes
 
 __all__ = ["read_fields", "write_fields"]
 
@@ -54,7 +55,7 @@ def read_fields(path: str | os.PathLike[str]) -> dict[str, Any]:
         If it cannot be read.
     """
     suffix = _suffix(path)
-    content = Path(path).read_bytes()
+    content = file_bytes(path)
     try:
         if suffix == ".json":
             fields = json.loads(content)

@@ -136,4 +136,8 @@ def changed_options(options: FitOptions | None, changes: Mapping[str, Any]) -> F
     for name in changes:
         if name not in known:
             raise TypeError(f"{name}: no such option; known: {', '.join(known)}")
-    return replace(FitOptions() if options is None else options, **changes)
+    options = _DEFAULT if options is None else options
+    return replace(options, **changes) if changes else options
+
+
+_DEFAULT = FitOptions()

@@ -1,1 +1,1 @@
-"""Inner parts of the renderer of films: paint, edges, textures."""
+"""Inner parts of the renderer of films: atlas, light, edges."""

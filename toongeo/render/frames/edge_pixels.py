@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from toongeo.arrays import Floats, Integers, Mask, Singles
 
@@ -13,13 +14,13 @@ _STEEP = 4.0  # px of depth from one pixel to the next: a slope of 76 degrees, w
 _FAR = 6.0  # texels from one pixel to the next, which are about one apart: another place of the head begins
 
 
-def edge_pixels(places: Singles) -> Mask:
+def edge_pixels(x: Singles, y: Singles, depth: Singles, px: float) -> Mask:
     """Pixels (h, w) from which another is far: in the texture, in depth, or because nothing is there.
 
-    ``places`` (3, h, w) are the texel's x and y and the depth, px.
+    ``x`` and ``y`` (h, w) are texels; of the depth (h, w), in any unit, ``px`` is as much as a pixel is wide.
     """
-    edges = np.zeros(places.shape[1:], bool)
-    for values, apart in zip(places, (_FAR, _FAR, _STEEP), strict=True):
+    edges = np.zeros(x.shape, bool)
+    for values, apart in ((x, _FAR), (y, _FAR), (depth, _STEEP * px)):
         across = np.abs(values[:, 1:] - values[:, :-1]) > apart
         down = np.abs(values[1:] - values[:-1]) > apart
         edges[:, 1:] |= across
@@ -29,7 +30,7 @@ def edge_pixels(places: Singles) -> Mask:
     return edges
 
 
-def faces_near(px: Floats, faces: Integers, edges: Mask) -> Integers:
+def faces_near(px: Floats, faces: NDArray[np.integer], edges: Mask) -> Integers:
     """Rows of the faces (m, 3) in whose bounding box there is a pixel of ``edges`` (h, w)."""
     height, width = edges.shape
     count = np.zeros((height + 1, width + 1), np.int32)

@@ -1,4 +1,4 @@
-"""The nearest face of each pixel by OpenCV 5; the only place that uses its rasterizer."""
+"""The nearest face of each pixel by the rasterizer of OpenCV 5."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.arrays import Floats, Integers, Singles
+from toongeo.render.raster.opencv_space import opencv_space
 
 __all__ = ["opencv_nearest"]
 
@@ -22,9 +23,8 @@ def opencv_nearest(
 ) -> NDArray[np.int32]:
     """Row of the nearest face at each pixel: FLAT shading gives a face the colour of its first vertex.
 
-    OpenCV knows only a perspective camera. At fovY = pi/2, near 1, far 2, a point at the distance
-    d = 2 / (2 - t) gets the buffer depth t, so X = x_ndc d w/h, Y = y_ndc d, Z = -d undoes the perspective
-    and keeps the depth linear. Its pixel centres are at +0.5.
+    OpenCV knows only a perspective camera. At fovY = pi/2, near 1, far 2, a point at the distance d = 2 / (2 - t) gets
+    the buffer depth t, which keeps the depth linear.
     """
     colours = np.full((height, width, 3), -1.0, np.float32)
     if len(faces) == 0:
@@ -36,10 +36,7 @@ def opencv_nearest(
         d = 2.0 / (2.0 - _NEAREST + nearness)
     else:
         d = np.ones(len(points))  # divides without rounding
-    space = np.empty((len(points), 3), np.float32)
-    space[:, 0] = ((points[:, 0] + 0.5) * (2.0 / width) - 1.0) * d * (width / height)
-    space[:, 1] = (1.0 - (points[:, 1] + 0.5) * (2.0 / height)) * d
-    space[:, 2] = -d
+    space = opencv_space(points, d, height, width)
     corners = space.take(faces, axis=0)
     middle = (corners[:, 0] + corners[:, 1] + corners[:, 2]) / np.float32(3.0)
     corners += (corners - middle[:, None]) * growth[:, None, None]

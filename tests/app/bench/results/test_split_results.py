@@ -99,6 +99,14 @@ def test_printed_tables_take_the_place_of_those_with_their_columns():
     assert update_records(records, "", about) == records
 
 
+def test_tables_with_the_same_columns_keep_their_order():
+    records = [Record(name, "x", "2026-01-02", "", "", "", "| A |\n|---|\n| 0 |") for name in "abc"]
+    about = {"date": "2027-01-01"}
+    updated = update_records(records, "| A |\n|---|\n| 1 |\n\nthen\n\n| A |\n|---|\n| 2 |", about)
+    assert [record.body[-5:] for record in updated] == ["| 1 |", "| 2 |", "| 0 |"]
+    assert [record.date for record in updated] == ["2027-01-01", "2027-01-01", "2026-01-02"]
+
+
 def test_commands_with_words_for_data_need_a_path():
     assert filled_command("python benchmarks/a.py CARTOONS x", {"CARTOONS": "/c"}) == "python benchmarks/a.py /c x"
     kept = "PYTHONPATH=.:data python benchmarks/a.py --n 3"

@@ -136,6 +136,26 @@ def test_gradient_and_curvature_come_from_the_jacobian(landmark_loss, x):
     np.testing.assert_allclose(landmark_loss.curvature(x), curvature, rtol=1e-9)
 
 
+def test_the_bent_matrix_is_the_second_derivative(landmark_loss, unknowns, x):
+    """By central differences of the gradient, where the rotation vector is zero; elsewhere nearly, and symmetric."""
+    level = x.copy()
+    level[unknowns.rotation] = 0.0
+    step = 1e-5
+    expected = np.array(
+        [
+            (landmark_loss(level + step * row)[1] - landmark_loss(level - step * row)[1]) / (2 * step)
+            for row in np.eye(unknowns.size)
+        ]
+    )
+    value, slope, matrix = landmark_loss.normal(level, bent=True)
+    np.testing.assert_allclose(matrix, (expected + expected.T) / 2, atol=1e-7 * np.abs(expected).max())
+    assert value == pytest.approx(landmark_loss(level)[0], rel=1e-12)
+    np.testing.assert_allclose(slope, landmark_loss(level)[1], atol=1e-12)
+    plain, turned = (landmark_loss.normal(x, bent=bent)[2] for bent in (False, True))
+    np.testing.assert_allclose(turned, turned.T, atol=1e-12)
+    assert np.abs(turned - plain).max() > 1e-3 * np.abs(plain).max()
+
+
 def test_the_matrix_of_the_total_loss_is_that_of_its_residuals(landmark_loss, unknowns, x):
     """Landmarks from their Jacobian; the nod is one squared residual."""
     prior = PriorLoss(unknowns, 0.7, 0.4, mean(unknowns))
@@ -146,8 +166,8 @@ def test_the_matrix_of_the_total_loss_is_that_of_its_residuals(landmark_loss, un
     expected += 0.3 * np.diag(np.repeat([1.4, 0.8, 0.0], [unknowns.n_identity, unknowns.n_expression, 6]))
     value, slope = nod(x)  # L = r^2: its matrix 2 r' r'^T is g g^T / (2 L)
     expected += 0.5 * np.outer(slope, slope) / (2 * value)
-    np.testing.assert_allclose(loss.matrix(x), expected, rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(np.diag(loss.matrix(x)), loss.curvature(x), rtol=1e-9)
+    np.testing.assert_allclose(loss.normal(x)[2], expected, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(np.diag(loss.normal(x)[2]), loss.curvature(x), rtol=1e-9)
 
 
 def test_a_point_without_weight_pulls_nothing(landmark_loss, x):

@@ -55,6 +55,19 @@ def test_the_prior_of_the_identity_counts_once(model, person):
     assert JointLoss([single])(x)[0] == pytest.approx(single(x)[0], rel=1e-12)
 
 
+def test_the_matrix_of_the_sum_is_its_second_derivative(model, person):
+    problems = [starting_problem(model, points, FitOptions()) for points in person(0)[1]]
+    loss = JointLoss([p.loss(model.landmarks, 1e-4 * (k + 1)) for k, p in enumerate(problems)])
+    x = loss.joined([p.search.start for p in problems])
+    way = np.random.default_rng(4).standard_normal(len(x)) / np.sqrt(loss.curvature(x))
+    step = 1e-4
+    expected = (loss(x + step * way)[1] - loss(x - step * way)[1]) / (2 * step)
+    _, slope, matrix = loss.normal(x, bent=True)
+    # The prior on the pitch is left at Gauss and Newton's, of its small weight.
+    np.testing.assert_allclose(matrix @ way, expected, atol=5e-3 * np.abs(expected).max())
+    np.testing.assert_array_equal(slope, loss(x)[1])
+
+
 def test_one_identity_and_three_poses(person):
     pictures = person(1)[1]
     fits = fit_3dmm_together([None] * 3, pictures)

@@ -13,8 +13,9 @@ __all__ = ["update_records"]
 def update_records(records: Sequence[Record], printed: str, origin: Mapping[str, str]) -> list[Record]:
     """The records of one command after it has run.
 
-    A table that was printed takes the place of the record with the same first line. If none has it, the first record
-    becomes all that was printed, and the others stay as they are, with their dates.
+    A table that was printed takes the place of the record with the same first line; of several with the same first
+    line, each the place of its turn. If none has it, the first record becomes all that was printed, and the others stay
+    as they are, with their dates.
 
     Examples
     --------
@@ -22,18 +23,18 @@ def update_records(records: Sequence[Record], printed: str, origin: Mapping[str,
     >>> [record.body for record in update_records(old, "| B |\\n|---|\\n| 1 |", {"date": "2026-02-02"})]
     ['| A |', '| B |\\n|---|\\n| 1 |']
     """
-    tables: dict[str, str] = {}
+    tables: dict[str, list[str]] = {}
     lines: list[str] = []
     for line in [*printed.splitlines(), ""]:
         if line.startswith("|"):
             lines.append(line)
         elif lines:
-            tables.setdefault(lines[0], "\n".join(lines))
+            tables.setdefault(lines[0], []).append("\n".join(lines))
             lines = []
-    updated = [
-        replace(record, body=tables[head], **origin) if (head := record.body.split("\n")[0]) in tables else record
-        for record in records
-    ]
+    updated = []
+    for record in records:
+        turn = tables.get(record.body.split("\n")[0])
+        updated.append(replace(record, body=turn.pop(0), **origin) if turn else record)
     if all(new is old for new, old in zip(updated, records, strict=True)) and printed:
         body = printed if tables else f"```\n{printed}\n```"
         updated[0] = replace(updated[0], body=body, **origin)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from toongeo.reading.check_file import MOST_MB, file_bytes
+from toongeo.reading.decoded import decoded
 
 __all__ = ["file_json", "file_lines"]
 
@@ -32,9 +33,8 @@ def file_lines(path: Path) -> list[tuple[int, str]]:
 def _text(path: Path, most_mb: int) -> str:
     """UTF-8, or UTF-16 that says so by its first bytes."""
     content = file_bytes(path, most_mb)
-    encoding = "utf-16" if content[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
     try:
-        return content.decode(encoding)
+        return decoded(content)
     except UnicodeDecodeError as error:
         raise ValueError(f"path: expected text, but {path} is not ({error})") from error
 

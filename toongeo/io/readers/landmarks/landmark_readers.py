@@ -12,7 +12,6 @@ from toongeo.io.readers.landmarks.read_json import read_json
 from toongeo.io.readers.landmarks.read_ljson import read_ljson
 from toongeo.io.readers.landmarks.read_npy import read_npy
 from toongeo.io.readers.landmarks.read_pts import read_pts
-from toongeo.io.readers.landmarks.read_rows import read_rows
 from toongeo.io.readers.landmarks.read_table import read_table
 from toongeo.reading.promise import promise
 
@@ -30,7 +29,7 @@ class LandmarkReader:
 LANDMARK_READERS: Mapping[str, LandmarkReader] = MappingProxyType(
     {
         ".pts": LandmarkReader(read_pts, one_based=True),
-        ".txt": LandmarkReader(read_rows),
+        ".txt": LandmarkReader(read_table),
         ".csv": LandmarkReader(read_table),
         ".npy": LandmarkReader(read_npy),
         ".json": LandmarkReader(read_json),

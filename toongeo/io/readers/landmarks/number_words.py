@@ -1,6 +1,7 @@
 """Numbers in text, exactly."""
 
 import math
+import re
 from decimal import Context, Decimal
 
 __all__ = ["EXACT", "number", "words"]
@@ -27,7 +28,9 @@ _MISSING = frozenset(
         "-1.#ind00",
     )
 )
-_BRACKETS = str.maketrans("()[]", "    ")
+_BRACKETS = str.maketrans('()[]"', "     ")
+# One comma between digits in each word, as in 37,94 236,1 or 37,94;236,1: then it stands before decimals.
+_DECIMAL_COMMAS = re.compile(r"[+-]?\d+(?:,\d+)?(?:e[+-]?\d+)?", re.IGNORECASE)
 
 
 def number(word: str, shift: int = 0) -> float | None:
@@ -49,7 +52,17 @@ def number(word: str, shift: int = 0) -> float | None:
 
 def words(line: str) -> list[str]:
     """Words of a line between blanks, commas, semicolons or brackets; empty cells alone are missing values."""
-    cells = line.replace(";", ",").replace("(ind)", "").split(",")  # -nan(ind) is one of the C library's
+    line = _with_points(line.replace("(ind)", ""))  # -nan(ind) is one of the C library's
+    cells = line.replace(";", ",").split(",")
     if len(cells) > 1 and not any(map(str.strip, cells)):
         return ["nan"] * len(cells)
     return " ".join(cells).translate(_BRACKETS).split()
+
+
+def _with_points(line: str) -> str:
+    """A line with points before decimals, if commas stand there: in a row of two to four numbers."""
+    if "," not in line or "." in line:
+        return line
+    parts = line.replace(";", " ").split()
+    decimal = len(parts) in (2, 3, 4) and all(map(_DECIMAL_COMMAS.fullmatch, parts))
+    return line.replace(",", ".") if decimal else line

@@ -33,10 +33,12 @@ class RawLandmarks:
 def face_points(rows: Iterable[Iterable[float]] | Floats, shift: int = 0) -> Floats:
     """Points (k, 2) less ``shift`` out of rows of x, y and perhaps a depth or a score.
 
-    A row of three zeros is a point that was not found: so COCO and OpenPose have it.
+    A row of three zeros is a point that was not found: so COCO and OpenPose have it. So is one of -1 alone, which lies
+    in no picture.
     """
     points = np.array(rows if isinstance(rows, np.ndarray) else list(map(list, rows)), np.float64)
     points = points.reshape(len(points), -1) if points.size else np.empty((0, 2))
     if points.shape[1] == 3:
         points[(points == 0).all(axis=1)] = np.nan
+    points[(points == -1).all(axis=1)] = np.nan
     return points[:, :2] - shift

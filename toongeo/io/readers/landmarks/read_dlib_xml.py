@@ -4,12 +4,14 @@ from pathlib import Path
 
 import numpy as np
 
+from toongeo.io.landmarks.landmark_schemes import SCHEMES
 from toongeo.io.readers.landmarks.number_words import number
 from toongeo.io.readers.landmarks.raw_landmarks import RawLandmarks
 from toongeo.io.readers.landmarks.xml_elements import xml_elements
 
 __all__ = ["read_dlib_xml"]
 
+_COUNTS = frozenset(count for counts in SCHEMES.values() for count in counts)
 _MOST_POINTS = 10_000  # of one face
 
 _Parts = dict[int, tuple[float, float]]
@@ -18,7 +20,7 @@ _Parts = dict[int, tuple[float, float]]
 def read_dlib_xml(path: Path, shift: int = 0) -> RawLandmarks:
     """A data set of imglab: each image is a frame, each box with parts a face, each part a point by its name.
 
-    Parts that are not there are missing points.
+    Parts that are not there are missing points. Names count from 0, or from 1 if that makes a scheme.
 
     Raises
     ------
@@ -49,6 +51,8 @@ def read_dlib_xml(path: Path, shift: int = 0) -> RawLandmarks:
 
 
 def _array(parts: _Parts) -> np.ndarray:
+    if 0 not in parts and max(parts) in _COUNTS:
+        parts = {name - 1: place for name, place in parts.items()}
     count = max(parts) + 1
     # The last parts may be missing as well: between the 51 inner points and all 68 there is no scheme.
     points = np.full((68 if 51 < count < 68 else count, 2), np.nan)

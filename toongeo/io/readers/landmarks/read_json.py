@@ -101,7 +101,7 @@ def _by_picture(annotations: list[Any]) -> list[_Frame]:
     frames: dict[str, _Frame] = {}
     for annotation in annotations:
         face = _found(annotation)
-        if isinstance(face, np.ndarray):
+        if isinstance(face, np.ndarray) and annotation.get("face_valid") is not False:
             frames.setdefault(str(annotation.get("image_id")), []).append(face)
     return list(frames.values())
 

@@ -28,8 +28,13 @@ def read_ljson(path: Path, shift: int = 0) -> RawLandmarks:
 
 
 def is_ljson(document: Any) -> bool:
-    """Whether parsed JSON is a file of landmarker.io."""
-    return isinstance(document, dict) and "version" in document and bool({"landmarks", "groups"} & document.keys())
+    """Whether parsed JSON is a file of landmarker.io, or a part of one: points with their connectivity."""
+    if not isinstance(document, dict):
+        return False
+    landmarks = document.get("landmarks")
+    if isinstance(landmarks, dict) and {"points", "connectivity"} <= landmarks.keys():
+        return True
+    return "version" in document and bool({"landmarks", "groups"} & document.keys())
 
 
 def ljson_landmarks(document: dict[str, Any], path: Path, shift: int) -> RawLandmarks:
@@ -51,7 +56,7 @@ def ljson_groups(document: dict[str, Any], path: Path) -> list[NDArray[np.float6
     found = [_points(group) for group in groups] if isinstance(groups, list) else []
     if not found or any(points is None for points in found):
         raise ValueError(f'path: expected {{"landmarks": {{"points": [[y, x], ...]}}}} in each group of {path}')
-    if document["version"] == 1 and len(found) > 1:  # a group is a part of the face
+    if document.get("version") == 1 and len(found) > 1:  # a group is a part of the face
         if len({points.shape[1] for points in found if points is not None}) > 1:
             raise ValueError(f"path: expected points of as many coordinates in all groups of {path}")
         found = [np.concatenate([points for points in found if points is not None])]

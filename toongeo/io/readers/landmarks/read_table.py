@@ -37,7 +37,7 @@ def read_table(path: Path, shift: int = 0) -> RawLandmarks:
         return _wide(columns, heading, lines, path, shift)
     if "success" in heading and "confidence" in heading:
         raise ValueError(f"path: {path} is OpenFace's, but without 2D landmarks x_0 ...: run it with -2Dfp")
-    if len(heading) == 2 or not {"x", "y"} <= set(lowered):
+    if lowered == ["x", "y"] or not {"x", "y"} <= set(lowered):
         return read_rows(path, shift)
     picked = [lowered.index("x"), lowered.index("y")]
     rows = [_numbers(row, picked, path, shift) for row in _rows(lines, heading, path)]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from toongeo.arrays import Floats
 from toongeo.pipeline.fit.losses.total_loss import TotalLoss
@@ -33,7 +35,7 @@ class JointLoss:
         """Length of the part that the pictures share."""
         return self.losses[0].landmark.unknowns.n_identity
 
-    def part(self, x: Floats, picture: int) -> Floats:
+    def part(self, x: NDArray[Any], picture: int) -> NDArray[Any]:
         """Unknowns (n,) of one picture."""
         shared = self.n_identity
         own = self.losses[0].landmark.unknowns.size - shared
@@ -62,6 +64,17 @@ class JointLoss:
         prior = self.losses[0].prior.curvature(self.part(x, 0))[: self.n_identity]
         diagonal[: self.n_identity] -= self._surplus * prior
         return diagonal
+
+    def normal(self, x: Floats, *, bent: bool = False) -> tuple[float, Floats, Floats]:
+        """Value, gradient (n,) and the Gauss-Newton matrix (n, n) at ``x`` (n,), bent as that of `LandmarkLoss`."""
+        value, gradient = self(x)
+        matrix = np.zeros((len(x), len(x)))
+        for k, loss in enumerate(self.losses):
+            place = self.part(np.arange(len(x)), k)
+            matrix[np.ix_(place, place)] += loss.normal(x[place], bent=bent)[2]
+        shared = np.arange(self.n_identity)
+        matrix[shared, shared] -= self._surplus * self.losses[0].prior.curvature(self.part(x, 0))[: self.n_identity]
+        return value, gradient, matrix
 
     @property
     def _surplus(self) -> float:

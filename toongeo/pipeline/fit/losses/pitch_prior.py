@@ -46,12 +46,11 @@ class PitchPrior:
         curvature[self.unknowns.rotation] = 2 * self._weight * np.square(self._up(x)[1])
         return curvature
 
-    def matrix(self, x: Floats) -> Floats:
-        """The Gauss-Newton matrix (n, n)."""
-        matrix = np.zeros((self.unknowns.size, self.unknowns.size))
-        slope = self._up(x)[1]
-        matrix[self.unknowns.rotation, self.unknowns.rotation] = 2 * self._weight * np.outer(slope, slope)
-        return matrix
+    def normal(self, x: Floats) -> tuple[float, Floats, Floats]:
+        """Value, and gradient (3,) and Gauss-Newton matrix (3, 3) by the rotation, on which alone it depends."""
+        up, slope = self._up(x)
+        turn = np.array(slope)
+        return self._weight * up**2, 2 * self._weight * up * turn, 2 * self._weight * np.outer(turn, turn)
 
     @property
     def _weight(self) -> float:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from toongeo.arrays import Floats
 from toongeo.pipeline.fit.losses.landmark_loss import LandmarkLoss
 from toongeo.pipeline.fit.losses.pitch_prior import PitchPrior
@@ -43,7 +41,16 @@ class TotalLoss:
         landmark = self.landmark_weight * self.landmark.curvature(x)
         return landmark + self.prior_weight * self.prior.curvature(x) + self.pitch_weight * self.nod.curvature(x)
 
-    def matrix(self, x: Floats) -> Floats:
-        """The Gauss-Newton matrix (n, n)."""
-        landmark = self.landmark_weight * self.landmark.matrix(x)
-        return landmark + self.prior_weight * np.diag(self.prior.curvature(x)) + self.pitch_weight * self.nod.matrix(x)
+    def normal(self, x: Floats, *, bent: bool = False) -> tuple[float, Floats, Floats]:
+        """Value, gradient (n,) and the Gauss-Newton matrix (n, n) at ``x`` (n,), bent as that of `LandmarkLoss`."""
+        value, slope, matrix = self.landmark.normal(x, bent=bent)
+        prior, prior_slope = self.prior(x)
+        nod, nod_slope, nod_matrix = self.nod.normal(x)
+        matrix *= self.landmark_weight
+        matrix.ravel()[:: len(x) + 1] += self.prior_weight * self.prior.curvature(x)
+        turn = self.landmark.unknowns.rotation
+        matrix[turn, turn] += self.pitch_weight * nod_matrix
+        slope = self.landmark_weight * slope + self.prior_weight * prior_slope
+        slope[turn] += self.pitch_weight * nod_slope
+        value = self.landmark_weight * value + self.prior_weight * prior + self.pitch_weight * nod
+        return value, slope, matrix

@@ -94,7 +94,7 @@ class ReducedLoss:
         gradient = 2 * self.photometric_weight * (r.astype(J.dtype).ravel() @ J[:, :size]).astype(np.float64)
         gradient[:n] += self.geometry(z[:n])[1]
         gradient[n:] += 2 * self.albedo_weight * z[n:]
-        matrix[:n, :n] += self.geometry.matrix(z[:n])
+        matrix[:n, :n] += self.geometry.normal(z[:n])[2]
         matrix[n:, n:] += 2 * self.albedo_weight * np.eye(size - n)
         return QuadraticModel(z, self._value(x, float((r**2).sum())), gradient, matrix)
 

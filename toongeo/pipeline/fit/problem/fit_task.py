@@ -17,6 +17,7 @@ from toongeo.pipeline.fit.face_fit import FaceFit, FitReport
 from toongeo.pipeline.fit.fit_options import FitOptions
 from toongeo.pipeline.fit.ibug_landmarks import ibug_landmarks
 from toongeo.pipeline.fit.landmarks.landmark_table import landmark_table, table_landmarks
+from toongeo.pipeline.fit.losses.gauss_newton import GAUSS_NEWTON
 from toongeo.pipeline.fit.losses.nlopt_minimize import known_algorithms
 from toongeo.pipeline.fit.problem.landmark_problem import LandmarkProblem
 from toongeo.pipeline.fit.problem.solution import Solution
@@ -79,15 +80,17 @@ class FitTask:
         )
         if options.adjust is None:
             return fit
+        named = {} if algorithm == GAUSS_NEWTON else {"algorithm": algorithm}  # distances are no squares
         return adjust_coefficients(
-            fit, self.pixels, options.adjust, algorithm=algorithm, max_evaluations=options.solver.max_evaluations
+            fit, self.pixels, options.adjust, max_evaluations=options.solver.max_evaluations, **named
         )
 
 
 def check_call(algorithm: str, options: FitOptions, regressor: Regressor | None) -> None:
     """Refuse an unknown algorithm, and a regressor's answer without a regressor."""
-    if algorithm not in known_algorithms():
-        raise ValueError(f"algorithm: no algorithm {algorithm!r}; known: {', '.join(known_algorithms())}")
+    known = (GAUSS_NEWTON, *known_algorithms())
+    if algorithm not in known:
+        raise ValueError(f"algorithm: no algorithm {algorithm!r}; known: {', '.join(known)}")
     if regressor is None and not options.refine:
         raise ValueError("refine: expected a regressor whose answer is not to be refined, got none")
 

@@ -12,10 +12,10 @@ from toongeo.pipeline.fit.frame.canonical_frame import CanonicalFrame
 from toongeo.pipeline.fit.frame.unknowns import Unknowns
 from toongeo.pipeline.fit.landmarks.robust_weights import SETTLED, robust_weights
 from toongeo.protocols import Coefficients
-from toongeo.render.camera import ScaledOrthographicCamera
 
 __all__ = ["held_bounds", "likeliest", "posing_weight", "principal_point_of", "start_vector"]
 
+_FLIP = np.array([1.0, -1.0])
 _POSING_PASSES = 4  # of pose and robust weights in turn
 
 
@@ -55,8 +55,8 @@ def posing_weight(points: Floats, pixels: Floats, options: FitOptions) -> Floats
     robust_weight = np.ones(len(points))
     for _ in range(_POSING_PASSES if options.robust else 0):
         scale, rotation, translation = scaled_orthographic_pose(points, pixels, robust_weight)
-        camera = ScaledOrthographicCamera(scale, rotation, translation)
-        squares = ((camera.project(points) - pixels) ** 2).sum(axis=1)
+        seen = scale * points @ rotation[:2].T * _FLIP + translation
+        squares = ((seen - pixels) ** 2).sum(axis=1)
         before, robust_weight = robust_weight, robust_weights(squares, options.robust, 0.0)
         if np.abs(robust_weight - before).max() <= SETTLED:
             break

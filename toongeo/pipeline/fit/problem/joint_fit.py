@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from toongeo.pipeline.fit.losses.joint_loss import JointLoss
-from toongeo.pipeline.fit.losses.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.losses.minimized import minimized
 from toongeo.pipeline.fit.problem.landmark_problem import LandmarkProblem
 from toongeo.pipeline.fit.problem.solution import Solution
 
@@ -33,20 +31,11 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
                 for problem, placed in zip(problems, states, strict=True)
             ]
         )
-        x = loss.joined(parts)
-        minimum = nlopt_minimize(
-            loss,
-            x,
-            bounds=(
-                loss.joined([problem.search.bounds[0] for problem in problems]),
-                loss.joined([placed.upper for placed in states]),
-            ),
-            scale=1 / np.sqrt(loss.curvature(x)),
-            algorithm=algorithm,
-            tolerance=options.solver.tolerance,
-            max_evaluations=options.solver.max_evaluations,
-            max_seconds=options.solver.max_seconds,
+        bounds = (
+            loss.joined([problem.search.bounds[0] for problem in problems]),
+            loss.joined([placed.upper for placed in states]),
         )
+        minimum = minimized(loss, loss.joined(parts), bounds, algorithm, options.solver)
         parts = [loss.part(minimum.x, k) for k in range(len(problems))]
         passes, evaluations = passes + 1, evaluations + minimum.evaluations
         before, asked = states, problems
@@ -60,6 +49,6 @@ def joint_fit(problems: Sequence[LandmarkProblem], algorithm: str) -> list[Solut
         if stayed and all(p.settled(*pair) for p, *pair in zip(problems, before, states, strict=True)):
             break
     return [
-        problem.solution(np.minimum(part, after.upper), placed, minimum.status, passes, evaluations)
+        problem.solution(part, placed, after, minimum.status, passes, evaluations)
         for problem, part, placed, after in zip(problems, parts, before, states, strict=True)
     ]

@@ -22,9 +22,8 @@ from toongeo.pipeline.fit.landmarks.inner_error import inner_error
 from toongeo.pipeline.fit.landmarks.outlier_errors import outlier_errors
 from toongeo.pipeline.fit.landmarks.robust_weights import SETTLED, robust_weights
 from toongeo.pipeline.fit.landmarks.silhouette import silhouette_landmarks
-from toongeo.pipeline.fit.losses.decoupled_pose import decoupled_pose
 from toongeo.pipeline.fit.losses.landmark_loss import LandmarkLoss
-from toongeo.pipeline.fit.losses.nlopt_minimize import nlopt_minimize
+from toongeo.pipeline.fit.losses.minimized import minimized
 from toongeo.pipeline.fit.losses.pitch_prior import PitchPrior
 from toongeo.pipeline.fit.losses.prior_loss import PriorLoss
 from toongeo.pipeline.fit.losses.total_loss import TotalLoss
@@ -83,24 +82,14 @@ class LandmarkProblem:
         passes = evaluations = 0
         while passes < self.options.solver.max_passes:
             loss = problem.loss(state.vertices, state.prior_weight, state.robust_weight)
-            decoupled = decoupled_pose(loss, x)
-            minimum = nlopt_minimize(
-                decoupled,
-                x,
-                bounds=(self.search.bounds[0], state.upper),
-                scale=1 / np.sqrt(decoupled.curvature),
-                algorithm=algorithm,
-                tolerance=self.options.solver.tolerance,
-                max_evaluations=self.options.solver.max_evaluations,
-                max_seconds=self.options.solver.max_seconds,
-            )
-            x = decoupled.x(minimum.x)
+            minimum = minimized(loss, x, (self.search.bounds[0], state.upper), algorithm, self.options.solver)
+            x = minimum.x
             passes, evaluations = passes + 1, evaluations + minimum.evaluations
             asked, (problem, x) = problem, problem.told(state, x)
             before, state = state, problem.renewed(state, x, first=passes == 1)
             if asked.target.convention == problem.target.convention and problem.settled(before, state):
                 break
-        return problem.solution(np.minimum(x, state.upper), before, minimum.status, passes, evaluations)
+        return problem.solution(x, before, state, minimum.status, passes, evaluations)
 
     def first_state(self, x: Floats) -> PassState:
         """What the first pass holds fixed."""
@@ -125,8 +114,7 @@ class LandmarkProblem:
 
     def renewed(self, state: PassState, x: Floats, *, first: bool) -> PassState:
         """What the next pass holds fixed after one that ended at ``x``; the first one tells the prior's weight."""
-        loss = self.loss(state.vertices, state.prior_weight)
-        errors = loss.landmark.residuals(x)
+        errors = self.loss(state.vertices, self.options.prior_weight).landmark.residuals(x)  # whatever the weights
         robust_weight = self._robust_weight(errors)
         prior_weight = state.prior_weight
         if first:
@@ -144,17 +132,23 @@ class LandmarkProblem:
         same = before.prior_weight == after.prior_weight and np.array_equal(before.upper, after.upper)
         return bool(stayed and believed and same)
 
-    def solution(self, x: Floats, state: PassState, status: str, passes: int, evaluations: int) -> Solution:
-        """The face at ``x``, where a pass with this state ended."""
+    def solution(
+        self, x: Floats, state: PassState, after: PassState, status: str, passes: int, evaluations: int
+    ) -> Solution:
+        """The face where a pass that began with one state ended at ``x``, from which another would go on."""
+        held = np.minimum(x, after.upper)
+        vertices = after.vertices if np.array_equal(x, held) else self.visible(held)
         loss = self.loss(state.vertices, state.prior_weight, state.robust_weight)
+        x = held
+        landmark, prior = loss.landmark(x)[0], loss.prior_value(x)
         return Solution(
             coefficients=x[self.unknowns.shape],
             camera=self.frame.camera(x, self.unknowns, self.principal_point),
-            landmark_vertices=self.visible(x),
-            landmark_loss=loss.landmark(x)[0],
-            prior_loss=loss.prior_value(x),
+            landmark_vertices=vertices,
+            landmark_loss=landmark,
+            prior_loss=prior,
             prior_weight=loss.prior_weight,
-            loss=loss(x)[0],
+            loss=loss.landmark_weight * landmark + loss.prior_weight * prior,
             status=status,
             passes=passes,
             evaluations=evaluations,

@@ -60,8 +60,13 @@ def evened_weights(weights: Floats, shared: float, unit: float) -> Floats:
         s.
     unit : float
     """
+    if shared == 0:
+        return weights
     W = weights * unit**2
-    return (1 + shared) / unit**2 * W @ np.linalg.inv(np.eye(2) + shared * W)
+    trace, determinant = W[:, 0, 0] + W[:, 1, 1], W[:, 0, 0] * W[:, 1, 1] - W[:, 0, 1] * W[:, 1, 0]
+    # W (I + s W)^-1 = (W + s det W I) / det(I + s W): in two dimensions the adjugate of W times W is det W.
+    even = W + (shared * determinant)[:, None, None] * np.eye(2)
+    return (1 + shared) / unit**2 * even / (1 + shared * trace + shared**2 * determinant)[:, None, None]
 
 
 @lru_cache(maxsize=4)

@@ -35,8 +35,8 @@ def expected_minimum(loss: TotalLoss, x: Floats, bounds: tuple[Floats, Floats]) 
 
     By one Gauss-Newton step of the unknowns that are not held by their bounds; it ends within these.
     """
-    value, slope = loss(x)
+    value, slope, matrix = loss.normal(x)
     free = (x > bounds[0]) & (x < bounds[1])
     step = np.zeros(len(x))
-    step[free] = np.linalg.solve(loss.matrix(x)[np.ix_(free, free)], -slope[free])
+    step[free] = np.linalg.solve(matrix[np.ix_(free, free)], -slope[free])
     return float(value + slope @ step / 2), np.clip(x + step, *bounds)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from toongeo.driving.landmarks.bounded_quadratic import bounded_quadratic
+from toongeo.geometry.operators.bounded_quadratic import bounded_quadratic
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -25,3 +25,17 @@ def test_bounds_that_meet_and_a_start_outside():
         np.eye(3), np.array([2.0, 2.0, -2.0]), np.zeros(3), np.array([1.0, 0.0, 1.0]), np.full(3, 9.0)
     )
     np.testing.assert_array_equal(x, [1.0, 0.0, 0.0])
+
+
+def test_what_goes_in_circles_is_left_to_descents():
+    """Murty's matrix, on which changing all bounds at once is known to cycle, has a minimum all the same."""
+    H = np.array([[4.0, 5.0, -5.0], [5.0, 9.0, -5.0], [-5.0, -5.0, 7.0]])
+    for g in np.random.default_rng(0).standard_normal((50, 3)):
+        x = bounded_quadratic(H, g, np.zeros(3), np.full(3, np.inf), np.zeros(3))
+        slope = H @ x - g
+        assert (x >= 0).all() and (slope >= -1e-9).all() and abs(slope @ x) < 1e-9
+
+
+def test_a_matrix_that_is_not_positive_definite_is_refused():
+    with pytest.raises(np.linalg.LinAlgError, match="H: expected a positive definite matrix"):
+        bounded_quadratic(np.diag([1.0, -1.0]), np.ones(2), np.full(2, -np.inf), np.full(2, np.inf), np.zeros(2))
