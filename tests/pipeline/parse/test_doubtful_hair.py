@@ -66,3 +66,12 @@ def test_cuts_that_would_take_most_of_the_mask_are_not_followed(scene):
     np.testing.assert_array_equal(found(scene, scene.cap), scene.cap)
     scene.cut.skin, scene.cut.head = scene.nothing, scene.zones.hull
     np.testing.assert_array_equal(found(scene, scene.cap), scene.cap)
+
+
+def test_a_wall_that_runs_into_the_head_is_no_hair(scene):
+    """A tuft that the picture's border cuts stays."""
+    wall, tuft = scene.nothing.copy(), scene.nothing.copy()
+    wall[:20, :90], tuft[:20, 95:105] = True, True
+    scene.cut.head = scene.cut.head | wall | tuft
+    hair = found(scene, scene.nothing)
+    assert hair[tuft].all() and not hair[wall].any()

@@ -74,7 +74,7 @@ def build_hair(img: NDArray[np.uint8], face: AlignedFace, rig: Rig, mask: NDArra
     parts = regions(face, plane, raster, head)
     mesh = shell_mesh(plane, parts, head)
     density = min(plane.scale, _FINEST)
-    inside = signed(parts.front)
+    inside = signed(parts.pictured)
     colours = picture_colours(plane, img, inside, _to_rim(parts), density)
     frame = _strand_frame(face)
     lowest = float(frame.at(plane.back(mesh.vertices))[1].max())

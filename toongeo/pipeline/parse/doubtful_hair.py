@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 
 from toongeo.arrays import Mask
@@ -15,6 +16,8 @@ __all__ = ["doubtful_hair"]
 # A cut that would take more than half of the mask contradicts it, and either may be wrong (a dark suit before a dark
 # wall, white hair beside a pale face): then the mask stays.
 _KEPT = 0.5
+_FRAME = 0.02  # heads: a picture may have a drawn frame
+_ALONG = 0.25  # heads: a tuft that the border cuts is narrower; the wall behind caricature 31 has 0.7
 _COMMON = 0.01  # of the crown's pixels: so common is a colour of hair
 
 
@@ -34,8 +37,20 @@ def doubtful_hair(view: WorkingView, zones: FaceZones, cut: HeadAndSkin, mask: M
 def _left(view: WorkingView, zones: FaceZones, left: Mask) -> Mask:
     """Of a mask, all above the chin that is beside the face, and within the face what has its colours.
 
-    Nothing below the chin: what is left there are clothes more often than hair.
+    Nothing below the chin: what is left there are clothes more often than hair. Nothing that runs along the picture's
+    border, either: there the cut of the head has let the ground in, and a wall is no hair.
     """
-    crown = left & ~zones.below_chin & ~zones.hull
+    crown = _within(left & ~zones.below_chin & ~zones.hull, view.head)
     common = colour_share(colour_codes(view.pixels), crown) > _COMMON
     return np.asarray(crown | (left & zones.hull & common))
+
+
+def _within(mask: Mask, head: float) -> Mask:
+    """A mask (h, w) less the pieces that meet the border of the view along much of the head's size."""
+    count, pieces = cv2.connectedComponents(mask.astype(np.uint8), connectivity=4)
+    inner = np.zeros(mask.shape, bool)
+    frame = max(1, round(_FRAME * head))
+    inner[frame:-frame, frame:-frame] = True
+    met = np.bincount(pieces[~inner], minlength=count) / frame > _ALONG * head
+    met[0] = False
+    return mask & ~met[pieces]

@@ -49,7 +49,8 @@ def find_hair(
     lies on the head is told by the head that is cut out of the picture, as drawn crowns are lower and narrower than
     fitted ones; its skin is no hair. Two cuts follow the outlines, by colours and by GrabCut, and where they disagree a
     third one by edges alone; the two that are most alike make the mask. Hair grows on the head: brows and crumbs are
-    left out, and below the chin counts only what hangs from above, not coats and collars. A mask is trusted where the
+    left out, and below the chin counts only what hangs from above, not coats and collars; what hangs below the nose and
+    has the colours of the clothes rather than of the hair is left out, too. A mask is trusted where the
     cuts agree, the trees are sure, head less skin bears it out, the picture shows its outline, the hair tops the head,
     and what hangs has the hair's colours. Where the trees see hair nowhere it is empty.
 

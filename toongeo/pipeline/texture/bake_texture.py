@@ -1,6 +1,6 @@
 """The picture on the UV atlas of the model.
 
-Constants were chosen by eye on the seven examples, where none are named.
+Constants were chosen by eye on the seven examples.
 """
 
 import dataclasses
@@ -21,6 +21,7 @@ from toongeo.pipeline.texture.lids.paint_lids import paint_lids
 from toongeo.pipeline.texture.mouth.paint_mouth import paint_mouth
 from toongeo.pipeline.texture.remove_shading import remove_shading
 from toongeo.pipeline.texture.sample_area import sample_area
+from toongeo.pipeline.texture.slant_limits import slant_limits
 from toongeo.pipeline.texture.unseen_colours import unseen_colours
 from toongeo.protocols import FaceParse
 from toongeo.render import Fragments, interpolate, rasterize, sample_image, uv_to_px
@@ -29,10 +30,6 @@ from toongeo.render.interpolate import blend_corners
 __all__ = ["bake_texture", "check_size"]
 
 _SIZES = (32, 8192)  # texels; in a smaller atlas the eyes would be lost, a larger one takes gigabytes
-# Cosines to the viewer between which a texel's confidence in the picture grows from 0 to 1. Drawings are dark along
-# the outline of a cheek, and from 0.15 to 0.45 that was streaks on the side of the head. Chosen on manga_girl and
-# caricatures 1, 21, 34 and 47.
-_OBLIQUE, _FRONTAL = 0.3, 0.65
 # By how much an expression may enlarge a triangle: up to the first, its drawing stays; from the second, none of it.
 _STRETCH = (2.0, 5.0)
 _HIDDEN_MM = 3.0  # how far behind the visible surface a texel may lie and still be taken as seen
@@ -147,7 +144,8 @@ class _Places:
 
     def __init__(self, face: AlignedFace, picture: FacePicture, shared: np.ndarray, size: int) -> None:
         self.face, self.picture = face, picture
-        ramp = np.clip((picture.cosines - _OBLIQUE) / (_FRONTAL - _OBLIQUE), 0, 1) * face.region("face")
+        low, high = slant_limits(face.model)
+        ramp = np.clip((picture.cosines - low) / (high - low), 0, 1) * face.region("face")
         depth = face.camera.depth(face.vertices)
         self.front = interpolate(picture.fragments, face.faces, depth)
         self.values = np.column_stack([picture.points, ramp, depth, _footprints(face, picture, size)])

@@ -14,13 +14,14 @@ from toongeo.model import MorphableModel
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.texture.diffuse_over_mesh import diffused
 from toongeo.pipeline.texture.face_picture import FacePicture
+from toongeo.pipeline.texture.slant_limits import slant_limits
 from toongeo.render import sample_image
 
 __all__ = ["unseen_colours"]
 
 _FADE_RINGS = 24  # edges over which unseen skin fades from its nearest seen colour to the mean skin colour
 _INNER_RINGS = 3  # edges over which the inner side of lids and lips takes on the model's colour
-_FRONTAL = 0.65  # cosine to the viewer from which a vertex is seen well, as in bake_texture
+_FRONTAL = 0.45  # cosine to the viewer from which a vertex amid the face is seen well
 _GRAZING = 0.15  # the same for hair, of which only the middle colour is taken: short hair is seen from the side
 _SMOOTHING = 24  # passes that take the streaks out of the breadth-first diffusion
 _SOFT = 12  # passes that soften the hairline
@@ -46,7 +47,7 @@ def unseen_colours(face: AlignedFace, picture: FacePicture) -> tuple[np.ndarray,
     model = face.model
     colours = 255.0 * model.albedo_mean.astype(float)
     offset = np.zeros_like(colours)
-    seen = _seen(face, picture, picture.sure) & model.region("face")
+    seen = _seen(face, picture, picture.sure, slant_limits(model)[1]) & model.region("face")
     if not seen.any():
         return colours, offset
     outside = model.region("skin") | model.region("neck")
@@ -73,7 +74,9 @@ def _outer_edges(model: MorphableModel) -> sp.csr_array:
     return adjacency(model.faces[outside[model.faces].all(1)], len(model.mean)).astype(float)
 
 
-def _seen(face: AlignedFace, picture: FacePicture, mask: np.ndarray, least: float = _FRONTAL) -> np.ndarray:
+def _seen(
+    face: AlignedFace, picture: FacePicture, mask: np.ndarray, least: float | np.ndarray = _FRONTAL
+) -> np.ndarray:
     """Vertices (n,) that face the camera and fall well inside a mask of the crop."""
     safe = cv2.erode(mask.astype(np.uint8), np.ones((5, 5), np.uint8))
     at = sample_image(safe.astype(np.float32)[..., None], picture.points)[:, 0]

@@ -8,7 +8,14 @@ import pytest
 from toongeo.colour.cielab import cielab
 from toongeo.pipeline.parse.hair.colour_evidence import colour_evidence
 from toongeo.pipeline.parse.hair.hair_alpha import hair_alpha
-from toongeo.pipeline.parse.hair.hair_trust import HairChances, HairCuts, HairMeasures, distrust, hair_measures
+from toongeo.pipeline.parse.hair.hair_trust import (
+    HairChances,
+    HairCuts,
+    HairMeasures,
+    distrust,
+    hair_measures,
+    without_clothes,
+)
 from toongeo.pipeline.parse.hair.superpixels import superpixels
 
 GOOD = HairMeasures(
@@ -131,6 +138,18 @@ def test_a_collar_in_another_colour_than_the_hair_is_noticed(zones, cap, colour)
     mask, field = cap | hanging, np.full(cap.shape, 0.5, np.float32)
     found = hair_measures(lab, mask, HairCuts(mask, mask, mask), zones, HairChances(field, field))
     assert (found.hanging > 0.5) == (colour == (20, 0, 0))
+
+
+@pytest.mark.parametrize("colour", [(20, 0, 0), (60, -30, -20)])
+def test_a_collar_is_taken_off_the_hair_and_a_strand_is_not(zones, cap, colour):
+    hanging = (np.abs(zones.across + 0.6) < 0.15) & (zones.up < 0.3) & (zones.up > -1.1)
+    coat = (zones.up < -1) & (np.abs(zones.across) < 1)
+    lab = np.full((*cap.shape, 3), np.float32([90, 0, 0]))
+    lab[coat], lab[cap], lab[hanging] = (60, -30, -20), (20, 0, 0), colour
+    mask = cap | hanging
+    kept = without_clothes(lab, mask, zones)
+    expected = mask if colour == (20, 0, 0) else mask & (zones.up >= -0.6)
+    np.testing.assert_array_equal(kept, expected)
 
 
 def test_a_third_mask_makes_doubtful_cuts_certain():

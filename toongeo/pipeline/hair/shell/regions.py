@@ -12,6 +12,8 @@ from toongeo.pipeline.hair.plane.depth_maps import ball_offset, depth_maps, silh
 from toongeo.pipeline.hair.plane.hair_raster import HairRaster
 from toongeo.pipeline.hair.plane.masks import closed, depth_inside, dilated, eroded, large_pieces, opened, without_holes
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
+from toongeo.pipeline.hair.shell.temples import behind_temples, beside_hair
+from toongeo.render import rasterize
 
 __all__ = ["HeadRaster", "Regions", "head_raster", "regions"]
 
@@ -24,6 +26,7 @@ _SLIVER_MM = 1.25  # half the breadth of what is no gap between front and back
 _CALM_MM = 1.0  # smooths the hairline; not the outer outline, whose corners are drawn
 _DRAWN_IN = 0.65  # level of the smoothed hairline, 0.4 mm inside, as the folded edge of hair covers so much skin
 _ASKEW = 5.0  # degrees of yaw beyond which the outlines of the cheeks are not the same lines on both sides
+_SHRUNKEN = 0.5  # of its size in the fit: a hidden ear has a quarter of it
 _TURNED = 12.0  # degrees of yaw beyond which one side of the hair is hidden
 
 
@@ -75,12 +78,15 @@ class Regions:
         Between strands that hang on both sides of the neck, behind it.
     over_skin
         Where hair of the front lies on the head, and does not come from behind it.
+    pictured
+        What of the front the picture shows as hair.
     """
 
     front: Mask
     back: Mask
     hanging: Mask
     over_skin: Mask
+    pictured: Mask
 
     @property
     def whole(self) -> Mask:
@@ -109,7 +115,8 @@ def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Reals) -> HeadRas
 
 def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: HeadRaster) -> Regions:
     """Front: the hair of the picture. Back: behind the scalp, behind hair beside the head, and between strands."""
-    front = raster.hair
+    covered = _covered(face, plane, raster.hair)
+    front = raster.hair | covered
     hanging = _between_strands(face, front, head)
     covered = front | eroded(head.neck, CELL_MM)  # what is behind these is not seen from the front
     back = head.crown | (dilated(head.crown, _AROUND_MM) & covered)
@@ -121,7 +128,8 @@ def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: He
     front = np.where(depth_inside(whole) > 4.0, calm, front)
     front = front | _slivers(whole & ~front, front)
     back = back | _slivers(whole & ~back, back)
-    return Regions(front, back, hanging, _over_skin(face, plane, front, head))
+    pictured = front & (raster.hair | ~covered)
+    return Regions(front, back, hanging, _over_skin(face, plane, front, head), pictured)
 
 
 def _over_skin(face: AlignedFace, plane: WorkingPlane, hair: Mask, head: HeadRaster) -> Mask:
@@ -141,6 +149,25 @@ def _over_skin(face: AlignedFace, plane: WorkingPlane, hair: Mask, head: HeadRas
         far = np.sign(face.camera.yaw) * (np.arange(hair.shape[1]) - column) > 0
         behind |= far & (touching | (rows < bridge))
     return over & ~behind
+
+
+def _covered(face: AlignedFace, plane: WorkingPlane, hair: Mask) -> Mask:
+    """Skin behind the temples with hair beside it, where hair lies on it though the picture shows none."""
+    F, X = face.faces, plane.of(face.vertices)
+    seen = rasterize(np.column_stack([plane.cells(X[:, :2]), X[:, 2]]), F, *plane.shape)
+    standing = np.any([face.region(ear) for ear in _standing_ears(face)] or [np.zeros(len(X), bool)], axis=0)
+    ahead = face.normals @ plane.rotation[2] > 0  # not the inside of the head, which shows between open lids
+    behind = behind_temples(face.model) & ahead
+    skin, ears = (seen.mask & kind[F].all(1)[seen.face_ids] for kind in (behind, standing))
+    middle = float(plane.cells(X[face.landmark_vertices[[27]], :2])[0, 0])
+    return beside_hair(hair, skin, ears, int(np.clip(round(middle), 0, hair.shape[1])))
+
+
+def _standing_ears(face: AlignedFace) -> list[str]:
+    """Ears that were not shrunken to make room for hair."""
+    ears = [name for name in ("ear_left", "ear_right") if face.model.has(name)]
+    sizes = {name: [np.ptp(V[face.region(name), 1]) for V in (face.vertices, face.fit.vertices)] for name in ears}
+    return [name for name, (size, fitted) in sizes.items() if size > _SHRUNKEN * fitted]
 
 
 def _slivers(gap: Mask, region: Mask) -> Mask:

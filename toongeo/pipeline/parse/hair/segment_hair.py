@@ -15,7 +15,14 @@ from toongeo.pipeline.parse.hair.cuts import colour_cut, edge_cut, grab_cut
 from toongeo.pipeline.parse.hair.growth_rules import growth_rules
 from toongeo.pipeline.parse.hair.hair_alpha import hair_alpha
 from toongeo.pipeline.parse.hair.hair_model import HairModel
-from toongeo.pipeline.parse.hair.hair_trust import HairChances, HairCuts, HairMeasures, hair_measures, overlap
+from toongeo.pipeline.parse.hair.hair_trust import (
+    HairChances,
+    HairCuts,
+    HairMeasures,
+    hair_measures,
+    overlap,
+    without_clothes,
+)
 from toongeo.pipeline.parse.hair.head_zones import HeadZones
 from toongeo.pipeline.parse.hair.narrowed_zones import narrowed_zones
 from toongeo.pipeline.parse.hair.plain_ground import plain_ground
@@ -57,6 +64,7 @@ def segment_hair(view: WorkingView, zones: HeadZones, cut: HeadAndSkin, model: H
     )
     if overlap(one, other) < _ALIKE:
         one, other = alike([one, other, growth_rules(edge_cut(lab, cover), zones, cover)])
+    one, other = (without_clothes(lab, part, zones) for part in (one, other))
     both = one | other  # each misses what the other has, more often than it strays
     hat = _hat(both, chances, zones)
     alpha = hair_alpha(view.pixels, both & ~hat, zones.head)
