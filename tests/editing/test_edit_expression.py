@@ -84,6 +84,16 @@ def test_a_known_pose_is_the_zero_of_the_motion(picture, avatar):
     assert np.allclose(posed.vertices(OPEN), avatar.face.vertices, atol=1e-5)
 
 
+def test_an_edited_picture_is_edited_back(editor, picture):
+    """Its face is fitted anew; that it smiles is known, so its rig is that of the face without the smile."""
+    weights = editor.weights({"mouthSmileLeft": 0.7, "mouthSmileRight": 0.7, "jawOpen": 0.2})[
+        : len(editor.avatar.names)
+    ]
+    again = ExpressionEditor(editor.frame(weights), editor.landmarks(weights), pose=weights)
+    back = again.frame(editor.pose[: len(editor.avatar.names)])
+    assert difference(back, picture[0])[editor.region].mean() < 2.2  # of 255
+
+
 def test_same_input_same_frame(editor):
     assert (editor.frame(OPEN) == editor.frame(OPEN)).all()
 
