@@ -78,7 +78,7 @@ take = tg.Take(times, eased(times))
 deltas = np.concatenate([avatar.rig.deltas, avatar.rig.gaze])  # gaze moves the lids a little
 by_hand = avatar.rig.neutral + np.tensordot(take.weights[30], deltas, axes=1)
 sum_difference = float(np.abs(by_hand - animator.frame(take.weights[30])).max())
-print(f"the sum by hand and the animator differ by {sum_difference:.1e} mm")
+print("the sum by hand and the animator differ by less than a ten-thousandth of a mm:", sum_difference < 1e-4)
 
 shown = [0, 12, 30, 40, 48, 60]
 fig = plt.figure(figsize=(10, 4.2), layout="constrained")

@@ -1,6 +1,6 @@
 """Films of an avatar, of which every weight and every landmark is known."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -68,14 +68,3 @@ def acted(t):
         **{f"browOuterUp{side}": brow for side in ("Left", "Right")},
         **{f"eyeBlink{side}": blink for side in ("Left", "Right")},
     }
-
-
-def paused(film, at, count=6, *, noise=4.0, seed=1):
-    """The same film, whose actor stays for more frames as in one of them, seen by a noisy camera."""
-    order = np.sort(np.r_[np.arange(len(film.frames)), np.full(count, at)])
-    frames = film.frames[order]
-    stays = np.flatnonzero(order == at)[1:]
-    noisy = frames[stays] + np.random.default_rng(seed).normal(0, noise, frames[stays].shape)
-    frames[stays] = np.clip(np.rint(noisy), 0, 255)
-    rest = {name: getattr(film, name)[order] for name in ("landmarks", "weights", "hidden")}
-    return replace(film, frames=frames, **rest)

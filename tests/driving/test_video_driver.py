@@ -4,22 +4,22 @@ import numpy as np
 import pytest
 
 from tests.driving.conftest import film, rms, smooth_weights
-from tests.filmed import paused
 from toongeo import ExpressionDriver, LandmarkDriver, LandmarkTracker, VideoDriver, track_landmarks
 from toongeo.driving.performer_of_frames import performer_of_frames
 from toongeo.driving.video_driver import CAUTION
 from toongeo.model.expression_schemes import EXPRESSIONS
 
 LIVELY = EXPRESSIONS.index("mouthSmileLeft")
-AT_REST = 2  # frame of the film
 
 
-def test_weights_of_a_film_are_nearer_to_the_truth_than_none(performance):
-    """The actor waits for a moment, as he is asked to: in the film as it is he is at rest in one frame."""
-    waits = paused(performance, AT_REST)
-    weights = VideoDriver().frames(waits.frames, waits.fps)
-    seen, acted = ~waits.hidden, waits.weights.any(axis=0)
-    truth = waits.weights[seen]
+@pytest.fixture(scope="module")
+def weights(performance):
+    return VideoDriver().frames(performance.frames, performance.fps)
+
+
+def test_weights_of_a_film_are_nearer_to_the_truth_than_none(performance, weights):
+    seen, acted = ~performance.hidden, performance.weights.any(axis=0)
+    truth = performance.weights[seen]
     found = weights[seen, :46]
     # 0.45 is what it reaches: on a short film of a small face the found points are the limit.
     assert rms(found[:, acted] - truth[:, acted]) < 0.5 * rms(truth[:, acted])

@@ -29,17 +29,17 @@ CAUTION = 5.0  # of LandmarkDriver, for points that were found; chosen on films 
 class VideoDriver:
     """Reads the expression off a film of a performer, as an :class:`toongeo.ExpressionDriver`.
 
-    :func:`toongeo.track_landmarks` follows the face. It is taken for without expression as it is most often. In all
-    other frames the skin of that one is found again, moved by pose and expression: landmarks only say where to start,
-    and where they miss in every frame alike, it does little harm. While the face is lost, the last weights are held.
-    What to expect is told in ``benchmarks/RESULTS.md``.
+    :func:`toongeo.track_landmarks` follows the face. A frame in which it shows no expression is looked for, and in all
+    others the skin of that frame is found again, moved by pose and expression: landmarks only say where to start, and
+    where they miss in every frame alike, it does little harm. While the face is lost, the last weights are held. What
+    to expect is told in ``benchmarks/RESULTS.md``.
 
     Parameters
     ----------
     performer : Avatar, LandmarkRig, (68, 2) px landmarks of a neutral frame, or None
         With None a neutral frame is found in the film itself, so the performer should look into the camera without
-        expression for longer than with any other. Of another performer no neutral frame is known: weights are then
-        read off the landmarks alone, as by :class:`LandmarkDriver`.
+        expression for a moment. Of another performer no neutral frame is known: weights are then read off the landmarks
+        alone, as by :class:`LandmarkDriver`.
     detector : LandmarkDetector, optional
         What finds the face; :func:`toongeo.detect_faces` unless another is given.
     neutral : float, optional

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.filmed import paused
 from toongeo.driving.landmark_rig import LandmarkRig, PerformerFace
 from toongeo.driving.landmarks.landmark_pose import LandmarkPose
 from toongeo.driving.picture.picture_pose import _jacobian, _sight, picture_error, picture_pose, slopes
@@ -89,9 +88,8 @@ def test_derivatives_are_those_of_the_grey_values(reader, rng):
 
 def test_the_frame_without_expression_is_found_in_a_film(performance):
     """Landmarks that miss by as much as a brow moves say where it is, roughly; the skin says it."""
-    waits = paused(performance, AT_REST)
-    reader = reader_of_film(waits.frames, np.where(waits.hidden[:, None, None], np.nan, waits.landmarks))
-    points = performance.landmarks
+    points = np.where(performance.hidden[:, None, None], np.nan, performance.landmarks)
+    reader = reader_of_film(performance.frames, points)
     reader.rest()
     pose = reader(performance.frames[AT_REST], points[AT_REST])
     assert pose.weights.sum() < 1.0

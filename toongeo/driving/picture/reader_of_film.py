@@ -14,7 +14,6 @@ from toongeo.arrays import Bytes, Floats
 from toongeo.driving.landmark_rig import LandmarkRig, PerformerFace
 from toongeo.driving.landmarks.landmark_pose import FEWEST, LandmarkPose
 from toongeo.driving.performer_of_frames import neutral_landmarks
-from toongeo.driving.picture.most_usual import most_usual
 from toongeo.driving.picture.skin_reader import SkinReader
 
 __all__ = ["is_seen", "reader_of_film"]
@@ -26,12 +25,11 @@ _AGREED = 15  # frames that say where the landmarks of the neutral face are, tho
 
 
 def reader_of_film(frames: Iterable[Bytes], sequence: Floats, neutral: int | None = None) -> SkinReader:
-    """Compares all frames with one, and then with the one of them that shows the face as it is mostly, or is `neutral`.
+    """Compares all frames with one, and then with the one of them that shows the least expression, or is `neutral`.
 
     What landmarks (f, 68, 2) px take for the neutral frame is off by as much as the landmarks are. Read against it,
-    weights go below 0 where a face is more at rest still, and are much the same wherever it is. In the frame whose
-    weights are the :func:`most_usual` ones, the landmarks are the median of what its neighbours in pose say, their
-    expression taken out: each frame's points miss in another way.
+    weights go below 0 where a face is more at rest still. In the frame where their sum is least, the landmarks are the
+    median of what its neighbours in pose say, their expression taken out: each frame's points miss in another way.
 
     Raises
     ------
@@ -49,7 +47,7 @@ def reader_of_film(frames: Iterable[Bytes], sequence: Floats, neutral: int | Non
         for k in way:
             poses[k] = reader.read(greys[k], sequence[k], least=_LEAST, steps=_STEPS)
     if neutral is None:
-        at = list(poses)[most_usual(np.array([pose.weights for pose in poses.values()]))]
+        at = min(poses, key=lambda k: float(poses[k].weights.sum()))
     found = {k: reader.smaller(sequence[k]) for k in poses}
     landmarks = reader.larger(_agreed(face.landmarks, poses, found, at))
     return SkinReader(PerformerFace.of_neutral(landmarks), _frame(frames, at), landmarks)
