@@ -164,7 +164,7 @@ def node():
 
     def run(script, *files):
         command = ["node", str(WEB / script), *map(str, files)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)
 
