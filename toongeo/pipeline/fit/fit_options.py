@@ -130,6 +130,9 @@ def _known(name: str, value: object, known: tuple[object, ...]) -> None:
         raise ValueError(f"{name}: expected one of {', '.join(map(repr, known))}, got {value!r}")
 
 
+_DEFAULT = FitOptions()
+
+
 def changed_options(options: FitOptions | None, changes: Mapping[str, Any]) -> FitOptions:
     """``options``, or the defaults if None, with some fields changed; an unknown field lists the known ones."""
     known = [option.name for option in fields(FitOptions)]
@@ -138,6 +141,3 @@ def changed_options(options: FitOptions | None, changes: Mapping[str, Any]) -> F
             raise TypeError(f"{name}: no such option; known: {', '.join(known)}")
     options = _DEFAULT if options is None else options
     return replace(options, **changes) if changes else options
-
-
-_DEFAULT = FitOptions()
