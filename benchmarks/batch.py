@@ -3,9 +3,9 @@
     python benchmarks/batch.py --pictures 500             # pictures are drawn from the template, in styles
     python benchmarks/batch.py --pictures 500 --scaling   # pictures a minute with one and with two workers instead
 
-Draws heads, spoils one in twenty, and makes avatars of them: by two workers, one of which is killed, in a batch that is
-interrupted twice and resumed; those of a folder of fifty once more one after the other, and by dask. Prints what must be
-so and whether it is; exit code 1 if something is not.
+Draws heads, spoils one in twenty, and makes avatars of them: by two workers, one of which is killed, in a batch that
+is interrupted twice and resumed; those of a folder of fifty once more one after the other, and by dask. Prints what
+must be so and whether it is; exit code 1 if something is not.
 """
 
 import argparse
