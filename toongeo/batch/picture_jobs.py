@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from toongeo.io.readers.picture_files import PICTURE_SUFFIXES, is_picture_file
 from toongeo.reading.check_file import file_bytes
 
 __all__ = ["STATE", "PictureJob", "input_digest", "picture_jobs"]
 
 STATE = ".toongeo-batch"  # folder of the workers' marks, beside the files
-_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
 _LANDMARKS = (".pts", ".json", ".csv", ".txt", ".npy", ".ljson")
 
 
@@ -42,7 +42,7 @@ def picture_jobs(folder: Path, output: Path, suffix: str) -> list[PictureJob]:
     """
     pictures = sorted(_pictures(folder, output.resolve()))
     if not pictures:
-        raise ValueError(f"folder: expected pictures ({', '.join(_PICTURES)}), but there are none in {folder}")
+        raise ValueError(f"folder: expected pictures ({', '.join(PICTURE_SUFFIXES)}), but there are none in {folder}")
     shared = Counter(path.relative_to(folder).with_suffix("") for path in pictures)
     jobs = []
     for picture in pictures:
@@ -70,7 +70,7 @@ def _pictures(folder: Path, output: Path) -> Iterator[Path]:
 
     for place, folders, files in os.walk(folder, onerror=fail):
         folders[:] = sorted(name for name in folders if Path(place, name).resolve() != output)
-        yield from (Path(place, name) for name in files if Path(name).suffix.lower() in _PICTURES)
+        yield from (path for name in files if is_picture_file(path := Path(place, name)))
 
 
 def input_digest(job: PictureJob) -> str:

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from toongeo.io import read_image, read_landmarks
+from toongeo.io.readers.picture_files import pictures_in
 
-__all__ = ["PICTURES", "BenchPicture", "bench_folder"]
+__all__ = ["BenchPicture", "bench_folder"]
 
-PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
 _LANDMARKS = (".pts", ".txt", ".csv", ".npy")
 
 
@@ -47,9 +47,7 @@ def bench_folder(folder: Path) -> list[BenchPicture]:
     """
     if not folder.is_dir():
         raise NotADirectoryError(f"folder: expected a folder of pictures, got {folder}")
-    pictures = sorted(path for path in folder.iterdir() if path.suffix.lower() in PICTURES and path.is_file())
-    if not pictures:
-        raise ValueError(f"folder: expected pictures ({', '.join(PICTURES)}), got none in {folder}")
+    pictures = pictures_in(folder)
     stems: dict[str, Path] = {}
     found = []
     for picture in pictures:

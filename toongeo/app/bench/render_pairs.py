@@ -7,10 +7,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from toongeo.app.bench.bench_folder import PICTURES
 from toongeo.app.bench.blind_sheets import blind_sheets, side_by_side
 from toongeo.arrays import Bytes
 from toongeo.io import read_image
+from toongeo.io.readers.picture_files import is_picture_file, pictures_in
 
 __all__ = ["RENDERED", "render_pairs"]
 
@@ -69,10 +69,7 @@ def render_pairs(old: Path, new: Path, output: Path, *, seed: int = 0, inputs: P
 def _pictures(folder: Path, argument: str) -> dict[str, Path]:
     if not folder.is_dir():
         raise NotADirectoryError(f"{argument}: expected a folder of pictures, got {folder}")
-    found = {p.name: p for p in sorted(folder.iterdir()) if p.suffix.lower() in PICTURES and p.is_file()}
-    if not found:
-        raise ValueError(f"{argument}: expected pictures ({', '.join(PICTURES)}), got none in {folder}")
-    return found
+    return {path.name: path for path in pictures_in(folder, argument)}
 
 
 def _differ(before: Path, after: Path) -> bool:
@@ -84,7 +81,7 @@ def _differ(before: Path, after: Path) -> bool:
 
 
 def _input(folder: Path, name: str) -> Path:
-    found = sorted(p for p in folder.glob(f"{Path(name).stem}.*") if p.suffix.lower() in PICTURES)
+    found = sorted(p for p in folder.glob(f"{Path(name).stem}.*") if is_picture_file(p))
     if not found:
         raise ValueError(f"inputs: expected a picture {Path(name).stem}, got none in {folder}")
     return found[0]

@@ -8,11 +8,11 @@ from toongeo.app.check_output import check_output
 from toongeo.app.commands.path_is import path_is
 from toongeo.arrays import Bytes, Floats
 from toongeo.io import read_image, read_landmarks, write_landmarks
+from toongeo.io.readers.picture_files import pictures_in
 
 __all__ = ["FORMATS", "PictureList"]
 
 FORMATS = (".pts", ".json", ".csv", ".txt", ".npy", ".ljson")  # first the one that other tools know best
-_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
 
 
 class PictureList:
@@ -44,9 +44,7 @@ class PictureList:
         if path.is_dir():
             if given is not None or output is not None:
                 raise ValueError(f"path: expected one picture to go with a file of landmarks, got the folder {path}")
-            self._paths = sorted(file for file in path.iterdir() if file.suffix.lower() in _PICTURES)
-            if not self._paths:
-                raise ValueError(f"path: expected a folder with pictures, but there are none in {path}")
+            self._paths = pictures_in(path, "path")
             return
         self._paths = [path]
         img = read_image(path)

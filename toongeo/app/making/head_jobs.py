@@ -9,10 +9,10 @@ from pathlib import Path
 
 from toongeo.app.check_output import check_output
 from toongeo.app.making.make_options import MakeOptions
+from toongeo.io.readers.picture_files import pictures_in
 
 __all__ = ["HeadJob", "check_jobs", "head_jobs"]
 
-_PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".bmp", ".gif", ".tif", ".tiff")
 _LANDMARKS = (".pts", ".json", ".csv", ".txt", ".npy", ".ljson", ".xml")  # the first that is there counts
 _SHEETS = (".png", ".jpg", ".jpeg", ".webp")
 _NAME = "{name}"
@@ -134,12 +134,7 @@ def _new_folders(jobs: Sequence[HeadJob]) -> Iterator[None]:
 
 
 def _pictures(image: Path) -> list[Path]:
-    if not image.is_dir():
-        return [image]
-    found = sorted(path for path in image.iterdir() if path.suffix.lower() in _PICTURES and path.is_file())
-    if not found:
-        raise ValueError(f"image: expected a folder with pictures ({', '.join(_PICTURES)}), got none in {image}")
-    return found
+    return pictures_in(image, "image") if image.is_dir() else [image]
 
 
 def _named(output: Path, picture: Path, parameter: str, several: bool, suffix: str) -> Path:
