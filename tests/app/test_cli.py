@@ -84,15 +84,16 @@ def test_make_crops_snaps_and_refines(tmp_path, capsys):
     assert inner[0] != inner[1]  # another fit, to other eye points
 
 
-def test_make_writes_a_vrm_with_its_author_and_a_small_glb(tmp_path, capsys):
+def test_make_writes_a_vrm_with_its_author_and_a_small_glb(tmp_path, avatar, monkeypatch):
     from toongeo.io import read_glb
 
+    monkeypatch.setattr("toongeo.app.make.make_avatar", lambda *_, **__: avatar)
     arguments = ["make", str(PICTURE), "--landmarks", str(POINTS), "--texture-size", "64"]
     assert main([*arguments, "-o", str(tmp_path / "a.vrm"), "--author", "Ada", "--author", "Bob"]) == 0
     meta = read_glb(tmp_path / "a.vrm").json["extensions"]["VRMC_vrm"]["meta"]
     assert meta["authors"] == ["Ada", "Bob"]
-    glb = [*arguments, "-o", str(tmp_path / "a.glb"), "--quantize", "--names", "arkit", "--texture", "none"]
-    assert main(glb) == 0
+    small = ["--quantize", "--names", "arkit", "--texture", "none", "--no-unlit"]
+    assert main([*arguments, "-o", str(tmp_path / "a.glb"), *small]) == 0
     document = read_glb(tmp_path / "a.glb").json
     assert len(document["meshes"][0]["extras"]["targetNames"]) == 52 and "images" not in document
     assert document["extensionsUsed"] == ["KHR_mesh_quantization", "KHR_materials_specular"]
