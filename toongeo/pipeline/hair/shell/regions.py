@@ -14,6 +14,7 @@ from toongeo.pipeline.hair.plane.hair_raster import HairRaster
 from toongeo.pipeline.hair.plane.masks import closed, depth_inside, dilated, eroded, large_pieces, opened, without_holes
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 from toongeo.pipeline.hair.shell.temples import behind_temples, beside_hair
+from toongeo.pipeline.hair.shell.tufts import between_tufts
 from toongeo.render import rasterize
 
 __all__ = ["HeadRaster", "Regions", "head_raster", "regions"]
@@ -133,6 +134,7 @@ def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: He
     back = head.crown | (dilated(head.crown, _AROUND_MM) & covered)
     back |= (front & ~head.aired) | hanging
     back = without_holes(closed(back, _GAP_MM) & covered) & ~ending
+    back &= ~between_tufts(back & hanging & ~front, front)
     back = large_pieces(back, 0.02)
     whole = front | back
     calm = cv2.GaussianBlur(front.astype(np.float32), (0, 0), _CALM_MM / CELL_MM) > _DRAWN_IN
