@@ -134,7 +134,7 @@ def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: He
     back = head.crown | (dilated(head.crown, _AROUND_MM) & covered)
     back |= (front & ~head.aired) | hanging
     back = without_holes(closed(back, _GAP_MM) & covered) & ~ending
-    back &= ~between_tufts(back & hanging & ~front, front)
+    back &= ~(between_tufts(back & ~front, front) & hanging & ~dilated(head.crown, _AROUND_MM))
     back = large_pieces(back, 0.02)
     whole = front | back
     calm = cv2.GaussianBlur(front.astype(np.float32), (0, 0), _CALM_MM / CELL_MM) > _DRAWN_IN
