@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 
 from toongeo.geometry import self_intersections
-from toongeo.pipeline import Hair, build_hair
+from toongeo.model.anatomy.neck import neck_rim
+from toongeo.pipeline import Hair, build_hair, make_room
 from toongeo.render import Surface, interpolate, rasterize, render_mesh
 
 
@@ -45,6 +46,22 @@ def test_no_expression_comes_through(hair, roomy, mask):
     for name in ("browInnerUpLeft", "browOuterUpRight", "jawOpen", "cheekPuffLeft"):
         skin = depths(face.camera, rig.vertices({name: 1.0}), outer, mask.shape)
         assert (skin > front + 1.0)[inner].mean() < 1e-3
+
+
+def test_no_hair_is_seen_in_the_end_of_the_neck(avatars, cartoon):
+    """Hair that hangs on both sides of the neck, down to where it ends, closes behind it, not below it."""
+    bare = avatars("blue_girl")
+    mask = bare.parse.hair.mask
+    face, rig = make_room(bare.face, bare.rig, mask, bare.parse)
+    rim = face.vertices[neck_rim(face.model)]
+    middle, axes = rim.mean(axis=0), np.linalg.svd(rim - rim.mean(axis=0))[2]
+    down = -axes[2] * np.sign(axes[2, 1])
+    outline = (0.95 * (rim - middle) @ axes[:2].T).astype(np.float32)
+    away = build_hair(cartoon("blue_girl")[0], face, rig, mask).vertices - middle
+    under = away[away @ down > 1.0]
+    within = [cv2.pointPolygonTest(outline, (x, y), False) > 0 for x, y in under @ axes[:2].T]
+    assert len(within) > 50  # beside the neck it hangs lower
+    assert not any(within)
 
 
 def test_texture_holds_the_picture_in_front(hair, picture, roomy, mask):

@@ -38,7 +38,8 @@ def test_hair_beside_a_head_lies_on_its_side(avatar, picture):
     face, _ = make_room(face, avatar.rig, beside)
     plane = working_plane(face, beside)
     raster = hair_raster(plane, beside, np.ones(plane.shape, bool))
-    parts = regions(face, plane, raster, head_raster(face, plane, face.vertices))
+    head = head_raster(face, plane, face.vertices)
+    parts = regions(face, plane, raster, head)
     covered = parts.front & ~parts.pictured
     X = plane.cells(plane.of(face.vertices[face.landmark_vertices])[:, :2])
     rows = slice(int(X[33, 1]), int(X[19, 1]))  # nose to brows
@@ -46,3 +47,4 @@ def test_hair_beside_a_head_lies_on_its_side(avatar, picture):
         assert covered[rows, side].any(1).mean() > 0.15
     assert not (parts.front[rows, int(X[36, 0]) : int(X[45, 0])]).any()
     assert not (parts.pictured & covered).any()
+    assert parts.back[head.crown].all()  # tufts are cut out of hair that hangs, not out of what lies on the head

@@ -29,7 +29,9 @@ def solved(P: Reals, T: NDArray[np.int64], known: NDArray[np.bool_], values: Rea
         return f
     matrix = (stiffness[free][:, free] + 1e-9 * sp.eye_array(len(free))).tocsc()
     right = mass[free, None] * source - stiffness[free][:, fixed] @ f[fixed]
-    f[free] = splu(matrix, permc_spec="MMD_AT_PLUS_A").solve(right)
+    # It is positive definite: pivots on the diagonal do, and keep the ordering, which halves the time.
+    factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    f[free] = factors.solve(right)
     return f
 
 

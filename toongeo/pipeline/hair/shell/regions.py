@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from toongeo.arrays import Mask, Reals
+from toongeo.arrays import Integers, Mask, Reals
+from toongeo.model.anatomy.neck import neck_rim
 from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.hair.plane.above_nape import above_nape
 from toongeo.pipeline.hair.plane.depth_maps import ball_offset, depth_maps, silhouette
@@ -13,6 +14,7 @@ from toongeo.pipeline.hair.plane.hair_raster import HairRaster
 from toongeo.pipeline.hair.plane.masks import closed, depth_inside, dilated, eroded, large_pieces, opened, without_holes
 from toongeo.pipeline.hair.plane.working_plane import CELL_MM, WorkingPlane
 from toongeo.pipeline.hair.shell.temples import behind_temples, beside_hair
+from toongeo.pipeline.hair.shell.tufts import between_tufts
 from toongeo.render import rasterize
 
 __all__ = ["HeadRaster", "Regions", "head_raster", "regions"]
@@ -22,6 +24,7 @@ CLEAR_MM = 2.0  # between skin, in all expressions, and hair
 _AROUND_MM = 3.0  # by which hair behind the head is larger than the scalp, where the face or ears hide it
 _GAP_MM = 10.0  # between scalp and hair behind the neck, or in that: below, none
 _TOUCH_MM = 10.0  # breadth of the overlap with the outline of a head, where the fit may be off by so much
+_END_MM = 3.0  # about the end of the neck there is no hair but that before it: a rim of both would go through it
 _SLIVER_MM = 1.25  # half the breadth of what is no gap between front and back
 _CALM_MM = 1.0  # smooths the hairline; not the outer outline, whose corners are drawn
 _DRAWN_IN = 0.65  # level of the smoothed hairline, 0.4 mm inside, as the folded edge of hair covers so much skin
@@ -40,8 +43,8 @@ class HeadRaster:
         Skin in its farthest reach; -inf and +inf beside the head.
     front_off, back_off
         The same with 2 mm of air all around.
-    crown, neck
-        Silhouettes of the scalp above the nape, and of skin and neck.
+    crown, neck, end
+        Silhouettes of the scalp above the nape, of skin and neck, and of the lower end of the neck.
     rim_z : float
         Depth at which the crown turns from front to back.
     back_z : float
@@ -54,6 +57,7 @@ class HeadRaster:
     back_off: Reals
     crown: Mask
     neck: Mask
+    end: Mask
     rim_z: float
     back_z: float
 
@@ -99,8 +103,9 @@ def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Reals) -> HeadRas
     skin = model.region("skin") | model.region("neck")
     front, back = depth_maps(plane, plane.of(reach), F[skin[F].all(1)])
     X, scalp = plane.of(face.vertices), above_nape(model)
+    rim = neck_rim(model)
     facing = face.normals @ plane.rotation[2]
-    rim = scalp & (np.abs(facing) < 0.25)
+    turning = scalp & (np.abs(facing) < 0.25)
     return HeadRaster(
         front=front,
         back=back,
@@ -108,20 +113,28 @@ def head_raster(face: AlignedFace, plane: WorkingPlane, reach: Reals) -> HeadRas
         back_off=-ball_offset(-back, CLEAR_MM),
         crown=silhouette(plane, X, F[scalp[F].all(1)]),
         neck=silhouette(plane, X, F[skin[F].all(1)]),
-        rim_z=float(np.median(X[rim if rim.any() else scalp, 2])),
+        end=np.zeros_like(front, bool) if rim is None else silhouette(plane, X, _fan(rim)),
+        rim_z=float(np.median(X[turning if turning.any() else scalp, 2])),
         back_z=float(X[scalp, 2].min()),
     )
+
+
+def _fan(rim: Integers) -> Integers:
+    """Triangles that close a hole."""
+    return np.column_stack([np.full(len(rim) - 2, rim[0]), rim[1:-1], rim[2:]])
 
 
 def regions(face: AlignedFace, plane: WorkingPlane, raster: HairRaster, head: HeadRaster) -> Regions:
     """Front: the hair of the picture. Back: behind the scalp, behind hair beside the head, and between strands."""
     covered = _covered(face, plane, raster.hair)
     front = raster.hair | covered
-    hanging = _between_strands(face, front, head)
+    ending = dilated(head.end, _END_MM)  # below the neck there is nothing that hair could hang on
+    hanging = _between_strands(face, front, head) & ~ending
     covered = front | eroded(head.neck, CELL_MM)  # what is behind these is not seen from the front
     back = head.crown | (dilated(head.crown, _AROUND_MM) & covered)
     back |= (front & ~head.aired) | hanging
-    back = without_holes(closed(back, _GAP_MM) & covered)
+    back = without_holes(closed(back, _GAP_MM) & covered) & ~ending
+    back &= ~(between_tufts(back & ~front, front) & hanging & ~dilated(head.crown, _AROUND_MM))
     back = large_pieces(back, 0.02)
     whole = front | back
     calm = cv2.GaussianBlur(front.astype(np.float32), (0, 0), _CALM_MM / CELL_MM) > _DRAWN_IN
