@@ -15,6 +15,7 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.mouth.lower_face import lower_face
 from toongeo.pipeline.rig.mouth.open_as_drawn import OPENING
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.skin.affine_around import affine_around
 from toongeo.pipeline.rig.skin.crossing_triangles import Sheet, around, crossing_triangles
 from toongeo.pipeline.rig.skin.neighbour_means import neighbour_means
 
@@ -29,6 +30,7 @@ _MOVES_MM = 0.5  # lips that move less stay as they are
 _BENT, _REACH = 0.5, 3
 _ALLOWED = 3  # triangles that may intersect others
 _SMOOTHED = ((3, 3), (5, 8))  # edges around crossings, and how often motions are made alike there
+_PRESSED = ((2, 3), (4, 6))  # edges around crossings where motions are made affine, and where that fades out
 _SURROUNDINGS = 7  # edges around crossings within which new ones are looked for
 _WEAKENED = (0.7,)  # of an expression that still crosses: less of it would no longer be seen
 
@@ -38,8 +40,9 @@ def unfold_mouth(face: AlignedFace, rig: Rig) -> Rig:
 
     Lips that are drawn thin, or shut, have less room between them than the template's, and corners have the least.
     Where triangles come to intersect others that did not in the neutral face, the motions of neighbours are made
-    alike, and if that does not help, the expression is weakened, to 0.7 at most; of all that is tried the gentlest
-    change that helps is taken, or the one that leaves the fewest. What opens the mouth of the picture is not weakened.
+    alike, or affine (:func:`~toongeo.pipeline.rig.skin.affine_around.affine_around`), and if that does not help, the
+    expression is weakened, to 0.7 at most; of all that is tried the gentlest change that helps is taken, or the one
+    that leaves the fewest. What opens the mouth of the picture is not weakened.
     ``mouthClose`` is changed by what ``jawOpen`` lost, so that both together still seal the lips.
 
     Parameters
@@ -78,9 +81,11 @@ def _gentler(
     known = around(model, patch.vertices[patch.faces[hit]], _SURROUNDINGS)[patch.vertices] > 0
     looked_at = np.flatnonzero(known[patch.faces].any(1))
     resting = crossing_triangles(patch, [Sheet(neutral, looked_at)])[0]
-    smooth = [way, *(_alike(model, way, patch.vertices[patch.faces[hit]], *how) for how in _SMOOTHED)]
+    at = patch.vertices[patch.faces[hit]]
+    smooth = [_alike(model, way, at, *how) for how in _SMOOTHED]
+    pressed = [_pressed(model, neutral, motion, at, *how) for how in _PRESSED for motion in (way, smooth[-1])]
     for gain in (1.0, *gains):
-        for tried in smooth if gain < 1 else smooth[1:]:
+        for tried in ([] if gain == 1 else [way]) + smooth + pressed:
             found = np.setdiff1d(crossing_triangles(patch, [Sheet(neutral + gain * tried, looked_at)])[0], resting)
             if len(found) < least:
                 least, best = len(found), gain * tried
@@ -97,6 +102,13 @@ def _alike(model: MorphableModel, way: np.ndarray, at: np.ndarray, width: int, p
     for _ in range(passes):
         way[moved] += weight[moved, None] * (means @ way - way[moved])
     return way
+
+
+def _pressed(
+    model: MorphableModel, neutral: np.ndarray, way: np.ndarray, at: np.ndarray, core: int, fade: int
+) -> np.ndarray:
+    """Motions (n, 3) that are affine around vertices, but where there are none."""
+    return (affine_around(model, neutral, neutral + way, at, core, fade) - neutral) * way.any(1)[:, None]
 
 
 def _suspects(model: MorphableModel, neutral: np.ndarray, way: np.ndarray) -> np.ndarray:
