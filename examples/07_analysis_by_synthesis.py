@@ -354,7 +354,8 @@ print(f"{report.residual_before:.3f} with the best light, {report.residual_after
 # them from bending the shape: pixels count less the less their colour is like the skin of this face, and less the worse
 # they are explained (lesson 5). How much the picture counts against the landmarks follows from how well it is explained
 # as a whole. In a clean rendering the pixels rule; in a drawing, whose shading is what the artist liked, the landmarks
-# do. For a drawing there is little to gain, so `tg.make_avatar` leaves it off unless you ask (`photometric=True`).
+# do. For a drawing there is little to gain, so `tg.make_avatar` does this in photographs of people alone, unless you
+# ask (`photometric=True`).
 #
 # ## Exercises
 #

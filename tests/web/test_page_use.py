@@ -103,7 +103,7 @@ def test_it_lives_unless_motion_is_not_wanted(page, browse):
 
 
 TAKES = [
-    (live_link(2), "Playing 0.csv: 120 frames, 2.0 s", {"mouthSmileLeft": 0.5, "jawOpen": 0}),
+    (live_link(50), "Playing 0.csv: 3000 frames, 50.0 s", {"mouthSmileLeft": 0.5, "jawOpen": 0}),
     ("\ufefftime;jawOpen\r\n0;0,25\r\n0,5;\r\n90;0,25\r\n", "3 frames, 90.0 s", {"jawOpen": 0.25}),
     ("time,browInnerUp\n0,40\n90,40\n", "2 frames, 90.0 s", {"browInnerUpLeft": 0.4, "browInnerUpRight": 0.4}),
     ("name,age\nAda,36\n", "3.csv cannot be played: no column is named like an expression", {}),

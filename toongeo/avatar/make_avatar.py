@@ -11,6 +11,7 @@ import numpy as np
 from toongeo.avatar.avatar import Avatar
 from toongeo.avatar.making.add_hair import GivenMask, HairyHead, add_hair, read_mask, under_hair
 from toongeo.avatar.making.beyond import beyond_warnings
+from toongeo.avatar.making.refined import Photometric, check_photometric, refined, refinement
 from toongeo.avatar.making.rigged import mouth_warnings, posed, rigged
 from toongeo.avatar.making.styled import check_stylizer, drawn_hair, styled
 from toongeo.avatar.missing_parts import missing_parts
@@ -35,7 +36,6 @@ from toongeo.pipeline import (
     fit_lids,
     landmark_evidence,
     parse_face,
-    photometric_fit,
     snap_eyes,
 )
 from toongeo.pipeline.align.denoise_landmarks import Noise, check_noise
@@ -68,7 +68,7 @@ def make_avatar(
     parser: str | FaceParser | None = None,
     noise: Noise = "auto",
     snap: bool = False,
-    photometric: bool = False,
+    photometric: Photometric = "auto",
     neutral: bool = True,
     gain: float | Literal["auto"] = 1.0,
     method: Literal["cartoon", "caricature"] = "cartoon",
@@ -93,7 +93,7 @@ def make_avatar(
         texture coordinates ...) the avatar does without; ``report.warnings`` says what.
     fit : FaceFit, optional
         To these landmarks, as one of :func:`toongeo.fit_3dmm_together`: it is kept, with its identity and
-        model. Not with ``snap``, ``photometric`` or ``style``, which fit again.
+        model. Not with ``snap``, ``photometric=True`` or ``style``, which fit again.
     detector : LandmarkDetector or str, optional
         Finds the landmarks if none are given: see :func:`toongeo.detect_landmarks`.
     parser : FaceParser or str, optional
@@ -105,8 +105,10 @@ def make_avatar(
     snap : bool
         Move eye landmarks to the lids that the parser found (:func:`toongeo.snap_eyes`), and fit again. For points of a
         detector, which shrinks and shifts the eyes of drawings; points that were set by hand are better left alone.
-    photometric : bool
-        Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`).
+    photometric : bool or "auto"
+        Refine the fit by the picture, which also finds albedo and light (:func:`toongeo.photometric_fit`). "auto":
+        where shading tells of the shape, which is in photographs of people whom the model meets well; not of a ``fit``
+        that is given, nor of a picture that ``style`` draws.
     neutral : bool
         Close a mouth that is drawn open (:func:`toongeo.neutral_face`): ``avatar.vertices()`` is
         then at rest, ``avatar.vertices(avatar.pose)`` as in the picture. False: the face is taken for neutral as
@@ -149,8 +151,8 @@ def make_avatar(
     ------
     ValueError
         If the picture is not (H, W, 3) uint8, the landmarks cannot belong to it, no face was found where none are
-        given, method, rig, hair, style or noise is unknown, or a fit comes without landmarks or with what would change
-        it.
+        given, method, rig, hair, style, noise or photometric is unknown, or a fit comes without landmarks or with what
+        would change it.
 
     Examples
     --------
@@ -176,7 +178,8 @@ def make_avatar(
         )
     check_noise(noise)
     stylizer = check_stylizer(style)
-    changed = snap or photometric or stylizer is not None or not isinstance(scheme, str)
+    check_photometric(photometric)
+    changed = snap or photometric is True or stylizer is not None or not isinstance(scheme, str)
     if fit is not None and (landmarks is None or changed):
         raise ValueError("fit: expected landmarks by name with it, and no snap, photometric or style, which fit again")
     clock = _Clock(progress)
@@ -216,9 +219,11 @@ def make_avatar(
         clock.start("fit")
         landmarks = snap_eyes(landmarks, parse)
         fit = fit_3dmm(img, landmarks, model=model)
-    if photometric:
-        clock.start("fit")
-        fit = photometric_fit(img, fit, landmarks)
+    if photometric is True or (kept is None and drawing is None and isinstance(scheme, str)):
+        how = refinement(img, fit, photometric)
+        if how is not None:
+            clock.start("fit")
+            fit = refined(img, fit, landmarks, how, asked=photometric is True)
     clock.start("align")
     goal = given if cleaned.change else landmarks  # errors are told against the points that were given, or snapped
     face = align(fit, landmarks)

@@ -37,7 +37,8 @@ def _add_making(make: argparse.ArgumentParser) -> None:
     noise = "of the landmarks, in outer-eye distances; 0: exact (default auto: smoothed where they are plainly noisy)"
     make.add_argument("--noise", type=sigma, default="auto", metavar="SIGMA", help=noise)
     make.add_argument("--snap", action="store_true", help="eye landmarks are a detector's: put them onto the lids")
-    make.add_argument("--photometric", action="store_true", help="refine the fit by the picture")
+    refine = "refine the fit by the picture (default: in photographs of people)"
+    make.add_argument("--photometric", action=argparse.BooleanOptionalAction, default="auto", help=refine)
     hair = make.add_mutually_exclusive_group()
     hair.add_argument("--hair-mask", type=Path, metavar="FILE", help="picture of IMAGE's size, white where hair is")
     hair.add_argument("--no-hair", action="store_true", help="build no hair; it stays painted on the head")

@@ -95,7 +95,7 @@ def check_jobs(jobs: Sequence[HeadJob], options: MakeOptions, *, one: bool = Fal
     """
     if one and len(jobs) < 2:
         raise ValueError(f"same_person: expected several pictures, got {len(jobs)}")
-    if one and (options.snap or options.photometric or options.style):
+    if one and (options.snap or options.photometric is True or options.style):
         raise ValueError("same_person: expected no --snap, --photometric or --style, which fit every picture by itself")
     for job in jobs:
         options.check(job.output)

@@ -35,7 +35,7 @@ class MakeOptions:
     model: MorphableModel | None = None
     noise: Noise = "auto"
     snap: bool = False
-    photometric: bool = False
+    photometric: bool | Literal["auto"] = "auto"
     method: Literal["cartoon", "caricature"] = "cartoon"
     rig: Literal["transfer", "caricature"] = "transfer"
     style: str | None = None

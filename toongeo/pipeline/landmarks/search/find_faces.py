@@ -16,7 +16,7 @@ from toongeo.pipeline.landmarks.search.frames import applied, box_matrix, box_of
 from toongeo.pipeline.landmarks.search.passes import Passes, face_patch, run_passes
 from toongeo.pipeline.landmarks.search.photo_share import photo_share
 
-__all__ = ["Candidate", "FoundFace", "candidate_faces", "find_faces"]
+__all__ = ["Candidate", "FoundFace", "candidate_faces", "find_faces", "looks"]
 
 _TILTS = (-35.0, 35.0)  # degrees, tried when no upright face is found
 _BOXES = 14  # looked at
@@ -137,3 +137,11 @@ def _overlap(one: Candidate, other: Candidate) -> bool:
 def _same(points: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
     radius = box_of(other)[2]
     return bool(np.linalg.norm(points - other, axis=1).mean() < _SAME * radius)
+
+
+def looks(grey: np.ndarray, points: NDArray[np.float64], parts: DetectorParts) -> tuple[float, float]:
+    """How flat the face at points (68, 2) px is (see `flat_look`), and how much like a figure (see `FaceLook`)."""
+    patch = face_patch(grey, box_of(points))
+    points = applied(patch.matrix, points)
+    flat = flat_look(patch.grey, points, parts.cascade.shape)
+    return flat, parts.verifier.look(patch.grey, points, parts.cascade).figure
