@@ -68,7 +68,7 @@ def closed_mouth(model: MorphableModel, V: np.ndarray) -> np.ndarray:
 
 
 def _sound(model: MorphableModel, V: np.ndarray, closed: np.ndarray) -> np.ndarray:
-    """A closed mouth (n, 3) with few crossings, those at its corners say, without them where pressing the skin helps."""
+    """A closed mouth (n, 3) with few crossings, at its corners say, without them where pressing the skin helps."""
     hit = crossings(model, closed)
     if not 0 < len(hit) <= _PRESSED:
         return closed

@@ -14,7 +14,7 @@ _PHILTRUM = 0.3  # of the upper lip's height: by so much it comes down; jaws clo
 _UPPER_SHARE = (0.05, 0.4)  # of the way to the lower lip that the upper one goes at least and at most
 _ARCH = 0.03  # of the mouth's width: a line that arches more above its corners would be a frown; they are lifted
 _SHORTEST, _WIDEST = 0.7, 1.3  # of the longer lip that the line is at least; how much wider the mouth may get for that
-_ARCS = 3  # of the polynomials that vanish at the corners: an arc, one that leans, one that is flat amid; more would be waves
+_ARCS = 3  # polynomials that vanish at the corners: an arc, one that leans, one that is flat amid; more are waves
 _GAP = 0.004  # of the mouth's width, left between the lips: what touches counts as crossing
 _CORNER = 0.04  # of the line: where the gap has grown to its full size; nearer to the corners lips cross in a smile
 

@@ -21,16 +21,16 @@ from toongeo.pipeline.rig.skin.neighbour_means import neighbour_means
 
 __all__ = ["unfold_mouth"]
 
-_SEALS = ("mouthClose", "mouthPucker")  # the lips of these touch: they are given by what they seal
 _NAMES = ("cheek", "jaw", "mouth", "nose")
-_LIPS_MM = 3.0  # on the template, from the line where the lips meet: there skin lies upon skin and crosses unbent
-_MOVES_MM = 0.5  # lips that move less stay as they are
+_LIPS_MM = 6.5  # on the template, from the line where the lips meet: there skin lies upon skin and crosses unbent
+_MOVES_MM = 0.3  # lips that move less stay as they are
 # Skin that comes to cross is sheared or turned: ends of its edges part by so much of their length, or those of edges
 # so near.
 _BENT, _REACH = 0.5, 3
 _ALLOWED = 3  # triangles that may intersect others
 _SMOOTHED = ((3, 3), (5, 8))  # edges around crossings, and how often motions are made alike there
 _PRESSED = ((2, 3), (4, 6))  # edges around crossings where motions are made affine, and where that fades out
+_TIMES = 3  # that this is done: a fading motion may cross what is around it
 _SURROUNDINGS = 7  # edges around crossings within which new ones are looked for
 _WEAKENED = (0.7,)  # of an expression that still crosses: less of it would no longer be seen
 
@@ -59,12 +59,12 @@ def unfold_mouth(face: AlignedFace, rig: Rig) -> Rig:
     started = time.perf_counter()
     model, neutral, deltas = face.model, rig.neutral, rig.deltas.copy()
     patch, index = lower_face(model), {name: k for k, name in enumerate(rig.names)}
-    looked_at = [k for name, k in index.items() if name.startswith(_NAMES) and name not in _SEALS]
+    looked_at = [k for name, k in index.items() if name.startswith(_NAMES) and name != "mouthClose"]
     suspects = {k: _suspects(model, neutral, deltas[k]) for k in looked_at}
     sheets = [Sheet(neutral + deltas[k], triangles) for k, triangles in suspects.items()]
     for k, hit in zip(suspects, crossing_triangles(patch, sheets), strict=True):
         if len(hit) > _ALLOWED:
-            gains = () if rig.names[k] in OPENING else _WEAKENED
+            gains = None if rig.names[k] == "mouthPucker" else () if rig.names[k] in OPENING else _WEAKENED
             deltas[k] = _gentler(model, neutral, deltas[k].astype(float), hit, gains)
     if {"jawOpen", "mouthClose"} <= index.keys():
         jaw = index["jawOpen"]
@@ -73,24 +73,32 @@ def unfold_mouth(face: AlignedFace, rig: Rig) -> Rig:
 
 
 def _gentler(
-    model: MorphableModel, neutral: np.ndarray, way: np.ndarray, hit: np.ndarray, gains: tuple[float, ...]
+    model: MorphableModel, neutral: np.ndarray, way: np.ndarray, hit: np.ndarray, gains: tuple[float, ...] | None
 ) -> np.ndarray:
-    """A motion (n, 3) like ``way`` that leads fewer triangles of the lower face through others than ``hit`` (c,)."""
+    """A motion (n, 3) like ``way`` that leads fewer triangles of the lower face through others than ``hit`` (c,).
+
+    Without ``gains`` it is made affine only, which keeps sealed lips together.
+    """
     patch = lower_face(model)
-    least, best = len(hit), way
     known = around(model, patch.vertices[patch.faces[hit]], _SURROUNDINGS)[patch.vertices] > 0
     looked_at = np.flatnonzero(known[patch.faces].any(1))
     resting = crossing_triangles(patch, [Sheet(neutral, looked_at)])[0]
-    at = patch.vertices[patch.faces[hit]]
-    smooth = [_alike(model, way, at, *how) for how in _SMOOTHED]
-    pressed = [_pressed(model, neutral, motion, at, *how) for how in _PRESSED for motion in (way, smooth[-1])]
-    for gain in (1.0, *gains):
-        for tried in ([] if gain == 1 else [way]) + smooth + pressed:
-            found = np.setdiff1d(crossing_triangles(patch, [Sheet(neutral + gain * tried, looked_at)])[0], resting)
-            if len(found) < least:
-                least, best = len(found), gain * tried
-            if least <= _ALLOWED:
+    best, smoothed = way, gains is not None
+    for _ in range(_TIMES):
+        at = patch.vertices[patch.faces[hit]]
+        smooth = [_alike(model, best, at, *how) for how in _SMOOTHED] if smoothed else []
+        starts = [best, *smooth[-1:]]
+        pressed = [_pressed(model, neutral, start, at, *how) for how in _PRESSED for start in starts]
+        tries = smooth + pressed + [gain * tried for gain in gains or () for tried in [best, *smooth, *pressed]]
+        least, smoothed, gains = len(hit), False, None
+        for tried in tries:
+            found = np.setdiff1d(crossing_triangles(patch, [Sheet(neutral + tried, looked_at)])[0], resting)
+            if len(found) < len(hit):
+                hit, best = found, tried
+            if len(hit) <= _ALLOWED:
                 return best
+        if len(hit) == least:
+            break
     return best
 
 
