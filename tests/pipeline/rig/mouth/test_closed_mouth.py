@@ -29,6 +29,13 @@ def drawn(aligned):
     return face, neutral_face(face)
 
 
+@pytest.fixture(scope="module")
+def drawn_thin(aligned):
+    """A mouth that is drawn as a wedge, whose lips have no height."""
+    face = aligned("bad_guy")
+    return face, neutral_face(face)
+
+
 def moved_lines(model, V, up=UP, philtrum=OPEN_MM):
     line = lip_line(model)
     to_upper, to_lower = contact_line(line, V, up, philtrum)
@@ -62,6 +69,25 @@ def test_the_upper_lip_comes_down_by_no_more_than_its_height_allows(model, opene
     down = opened[line.upper, 1] - upper[:, 1]
     gap = np.linalg.norm(opened[model.landmarks[62]] - opened[model.landmarks[66]])
     assert down[len(down) // 2] < 0.1 * gap
+
+
+def test_lips_that_are_drawn_wavy_meet_at_one_arc(model, opened):
+    line = lip_line(model)
+    wavy, at = opened.copy(), arc_shares(opened[line.upper])
+    wavy[line.upper, 1] += 2.0 * np.sin(6 * np.pi * at)
+    upper, _ = moved_lines(model, wavy)
+    at = arc_shares(wavy[line.upper])
+    full = (at > 0.05) & (at < 0.95)  # the gap fades out towards the corners
+    waves = upper[full, 1] - np.polynomial.Polynomial.fit(at[full], upper[full, 1], 4)(at[full])
+    assert np.abs(waves).max() < 1e-9
+
+
+def test_a_lip_that_is_drawn_as_a_line_closes_without_crossings(drawn_thin):
+    face, at_rest = drawn_thin
+    model = face.model
+    assert crossing_count(model, at_rest.vertices) == 0
+    # mean distance of the lips in widths of the mouth: closed, that is, to the gap between them
+    assert lips_apart(model, at_rest.vertices) < 0.011 < lips_apart(model, face.vertices)
 
 
 def test_strain_of_a_uniform_stretch_is_its_factor(model):

@@ -206,7 +206,7 @@ def test_an_open_mouth_stays_open(aligned, transferred):
     assert close_slit(face, rig) is rig
 
 
-FOLDING = ("mouthSmileLeft", "mouthUpperUpLeft", "mouthUpperUpRight", "mouthRight")
+FOLDING = ("mouthPucker", "mouthSmileLeft", "mouthSmileRight", "mouthUpperUpRight", "mouthRight")
 
 
 @pytest.fixture(scope="module")
@@ -225,7 +225,8 @@ def test_expressions_push_less_skin_through_skin(folded):
         [[crossing_count(face.model, rig.vertices({name: 1.0})) for rig in (before, after)] for name in FOLDING]
     )
     assert (counts[:, 1] <= counts[:, 0]).all()
-    assert counts[:, 1].sum() < 0.7 * counts[:, 0].sum()
+    assert counts[:, 1].sum() < 0.3 * counts[:, 0].sum()
+    assert counts[:, 1].max() <= 13
 
 
 def test_unfolded_skin_stays_where_it_was_still_and_seals_as_before(folded):
@@ -238,6 +239,6 @@ def test_unfolded_skin_stays_where_it_was_still_and_seals_as_before(folded):
 
 def test_expressions_that_do_not_fold_are_left_alone(folded):
     _, before, after = folded
-    for name in ("browInnerUpLeft", "eyeBlinkLeft", "mouthPucker"):
+    for name in ("browInnerUpLeft", "eyeBlinkLeft", "tongueOut"):
         k = before.names.index(name)
         np.testing.assert_array_equal(after.deltas[k], before.deltas[k])

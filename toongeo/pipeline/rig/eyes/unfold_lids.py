@@ -14,6 +14,7 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.eyes.fit_eyes import Eyes
 from toongeo.pipeline.rig.eyes.keep_lids_outside import CLEARANCE, outwards
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.skin.affine_around import affine_around
 from toongeo.pipeline.rig.skin.crossing_triangles import (
     HOPELESS,
     Sheet,
@@ -32,6 +33,7 @@ _REACH = 6  # edges from there within which it is looked for
 _ALLOWED = 6  # triangles that may intersect others
 # By how much a shape is weakened where it folds, time after time; if that did not help, around the whole eye.
 _DAMPING = ((True, 0.4), (True, 0.7), (False, 0.5), (False, 0.7), (False, 1.0))
+_FEW, _PRESSING = 60, (1, 3)  # so many triangles of a blink at most; edges around them (:func:`affine_around`)
 _SPREADING = 12  # edges over which that fades into the surroundings
 
 
@@ -74,6 +76,7 @@ def unfold_lids(face: AlignedFace, rig: Rig, eyes: Eyes) -> Rig:
                     continue
                 if k == blink:
                     way = resolve_crossings(face.model, patch, rig.neutral, shapes[k], _ALLOWED)
+                    way = _pressed(face.model, patch, rig.neutral, way)
                     shapes[k] = _outside(rig.neutral, way, patch.vertices, eyes.centres[side], eyes.radii[side])
                     continue
                 if len(hit) > HOPELESS * len(patch.faces):
@@ -119,6 +122,15 @@ def _suspects(model: MorphableModel, side: str, neutral: np.ndarray, shapes: np.
             near = around(model, patch.vertices[patch.faces[sharp]], _REACH)[patch.vertices] > 0
             found[int(k)] = np.flatnonzero(near[patch.faces].any(1))
     return found
+
+
+def _pressed(model: MorphableModel, patch: EyePatch, start: np.ndarray, way: np.ndarray) -> np.ndarray:
+    """Ways (n, 3) that are affine around what still crosses, if fewer triangles do then."""
+    hit = np.setdiff1d(crossing_all(patch, start + way), crossing_all(patch, start))
+    if not _ALLOWED < len(hit) <= _FEW:
+        return way
+    tried = affine_around(model, start, start + way, patch.vertices[patch.faces[hit]], *_PRESSING) - start
+    return tried if len(crossing_all(patch, start + tried)) < len(hit) else way
 
 
 def _outside(start: np.ndarray, way: np.ndarray, at: np.ndarray, centre: np.ndarray, radius: float) -> np.ndarray:

@@ -13,7 +13,8 @@ from toongeo.model import MorphableModel
 from toongeo.model.anatomy.lip_line import LipLine, lip_line
 from toongeo.model.anatomy.still_vertices import still_vertices
 from toongeo.pipeline.rig.mouth.contact_line import contact_line
-from toongeo.pipeline.rig.mouth.lower_face import crossing_count, strain, uncrossed
+from toongeo.pipeline.rig.mouth.lower_face import crossing_count, crossings, strain, uncrossed
+from toongeo.pipeline.rig.skin.affine_around import affine_around
 
 __all__ = ["NEEDS", "closed_mouth"]
 
@@ -24,7 +25,8 @@ _HELD = (
     "socket_left", "socket_right",
 )  # fmt: skip
 _SHARES = (1.0, 0.9, 0.8, 0.7, 0.6)  # of the gap that are tried
-_FEW = 30  # crossing triangles that smoothing is likely to mend; with more, less of the gap is closed
+_FEW = 70  # crossing triangles that smoothing is likely to mend; with more, less of the gap is closed
+_PRESSED, _PRESSING = 12, (2, 3)  # so many of these at most; edges around them (:func:`affine_around`)
 _STRAIN = 2.6  # to which all but one in a hundred triangles may be stretched
 _TENSION = 2e-3  # 1/mm^2, of the plate
 _CLAMP = 1e-2  # least weight of an edge, and least mass of a vertex in terms of the median
@@ -53,16 +55,25 @@ def closed_mouth(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     harm, best = (np.inf, np.inf), V
     for share in _SHARES:
         closed = V + share * motion
-        crossings = crossing_count(model, closed)
-        if drawn < crossings <= drawn + _FEW:
-            closed = uncrossed(model, closed)
-            crossings = crossing_count(model, closed)
-        here = max(crossings - drawn, 0), max(strain(model, V, closed) - _STRAIN, 0.0)
+        count = crossing_count(model, closed)
+        if drawn < count <= drawn + _FEW:
+            closed = _sound(model, V, uncrossed(model, closed))
+            count = crossing_count(model, closed)
+        here = max(count - drawn, 0), max(strain(model, V, closed) - _STRAIN, 0.0)
         if here < harm:
             harm, best = here, closed
         if here == (0, 0.0):
             return closed
     return uncrossed(model, best)
+
+
+def _sound(model: MorphableModel, V: np.ndarray, closed: np.ndarray) -> np.ndarray:
+    """A closed mouth (n, 3) with few crossings, at its corners say, without them where pressing the skin helps."""
+    hit = crossings(model, closed)
+    if not 0 < len(hit) <= _PRESSED:
+        return closed
+    tried = affine_around(model, V, closed, model.faces[hit], *_PRESSING)
+    return tried if crossing_count(model, tried) < len(hit) else closed
 
 
 def _closing(model: MorphableModel, V: np.ndarray) -> np.ndarray:
@@ -98,7 +109,7 @@ def _bend(model: MorphableModel, V: np.ndarray, line: LipLine, swing: np.ndarray
     plate = sp.csr_matrix(K @ sp.diags_array(1 / mass) @ K + _TENSION * K)
     known = np.any([model.region(name) for name in _HELD], axis=0)
     known[still_vertices(model)] = known[line.vertices] = True
-    want, pull = _tubes_and_chin(model, line, swing, D, known)
+    want, pull = _tubes_and_chin(model, V, line, swing, D, known)
     free, given = np.flatnonzero(~known[used]), np.flatnonzero(known[used])
     spring = (pull[used] * mass * np.median(plate.diagonal() / mass) * 1e-2)[free]
     right = spring[:, None] * want[used[free]] - plate[free][:, given] @ D[used[given]]
@@ -106,13 +117,15 @@ def _bend(model: MorphableModel, V: np.ndarray, line: LipLine, swing: np.ndarray
 
 
 def _tubes_and_chin(
-    model: MorphableModel, line: LipLine, swing: np.ndarray, D: np.ndarray, known: np.ndarray
+    model: MorphableModel, V: np.ndarray, line: LipLine, swing: np.ndarray, D: np.ndarray, known: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Displacements (n, 3) that lips and chin should have, and how strongly (n,)."""
-    want, pull = np.zeros_like(D), np.zeros(len(D))
-    for name, path in (("lip_upper", line.upper), ("lip_lower", line.lower)):
+    want, pull, up = np.zeros_like(D), np.zeros(len(D)), _up(line, V)
+    for name, path, side in (("lip_upper", line.upper, up), ("lip_lower", line.lower, -up)):
         red = np.flatnonzero(model.region(name) & ~known)
-        want[red] = D[path[cKDTree(model.mean[path]).query(model.mean[red])[1]]]
+        edge = path[cKDTree(model.mean[path]).query(model.mean[red])[1]]
+        past = (V[edge] - V[red]) @ side  # a lip that is drawn as a line may have its red beyond its edge
+        want[red] = D[edge] + np.maximum(past, 0)[:, None] * side
         pull[red] = _TUBE
     motion = np.linalg.norm(model.expression[model.expression_index("jawOpen")], axis=1)
     below = model.mean[:, 1] < model.mean[model.landmarks[57], 1] - _BELOW_LIP_MM

@@ -14,6 +14,7 @@ _PHILTRUM = 0.3  # of the upper lip's height: by so much it comes down; jaws clo
 _UPPER_SHARE = (0.05, 0.4)  # of the way to the lower lip that the upper one goes at least and at most
 _ARCH = 0.03  # of the mouth's width: a line that arches more above its corners would be a frown; they are lifted
 _SHORTEST, _WIDEST = 0.7, 1.3  # of the longer lip that the line is at least; how much wider the mouth may get for that
+_ARCS = 3  # polynomials that vanish at the corners: an arc, one that leans, one that is flat amid; more are waves
 _GAP = 0.004  # of the mouth's width, left between the lips: what touches counts as crossing
 _CORNER = 0.04  # of the line: where the gap has grown to its full size; nearer to the corners lips cross in a smile
 
@@ -46,6 +47,7 @@ def contact_line(line: LipLine, V: np.ndarray, up: np.ndarray, philtrum: float) 
     share = np.clip(_PHILTRUM * philtrum / max(apart, 1e-9), *_UPPER_SHARE)
     contact = above + share * (below - above)
     contact[:, 2] = (above[:, 2] + below[:, 2]) / 2
+    contact += _faired(s, contact @ up)[:, None] * up
     axis = upper[-1] - upper[0]
     width = float(np.linalg.norm(axis))
     ends = (contact[0] + contact[-1]) / 2
@@ -57,3 +59,12 @@ def contact_line(line: LipLine, V: np.ndarray, up: np.ndarray, philtrum: float) 
     contact += widen * np.outer((contact - ends) @ axis, axis) / width**2
     half = _GAP / 2 * width * np.minimum(1, np.minimum(s, 1 - s) / _CORNER)[:, None] * up
     return interpolated(at_upper, s, contact + half) - upper, interpolated(at_lower, s, contact - half) - lower
+
+
+def _faired(s: np.ndarray, height: np.ndarray) -> np.ndarray:
+    """What lacks to heights (k,) along a line, at places in [0, 1], to lie on the nearest plain arc with their ends."""
+    chord = height[0] + s * (height[-1] - height[0])
+    arcs = (s * (1 - s))[:, None] * (2 * s[:, None] - 1) ** np.arange(_ARCS)
+    step = np.gradient(s)[:, None] ** 0.5  # so that what is sampled densely does not count more
+    share = np.linalg.lstsq(step * arcs, step[:, 0] * (height - chord), rcond=None)[0]
+    return np.asarray(chord + arcs @ share - height)

@@ -12,7 +12,7 @@ from toongeo.geometry.self_intersections import self_intersections
 from toongeo.model import MorphableModel
 from toongeo.model.anatomy.motion_shares import motion_shares
 
-__all__ = ["LowerFace", "crossing_count", "lower_face", "strain", "uncrossed"]
+__all__ = ["LowerFace", "crossing_count", "crossings", "lower_face", "strain", "uncrossed"]
 
 _ROUNDS = 4  # of smoothing, each over one ring of vertices more where the last one did not help
 _RINGS = 2  # around crossing triangles that are smoothed at first
@@ -35,7 +35,7 @@ def lower_face(model: MorphableModel) -> LowerFace:
 
 def crossing_count(model: MorphableModel, V: np.ndarray) -> int:
     """How many triangles of the face around the mouth intersect others of it."""
-    return len(_crossing(model, V))
+    return len(crossings(model, V))
 
 
 def strain(model: MorphableModel, V: np.ndarray, W: np.ndarray) -> float:
@@ -48,7 +48,7 @@ def strain(model: MorphableModel, V: np.ndarray, W: np.ndarray) -> float:
 
 def uncrossed(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     """Vertices with the skin around crossing triangles bent as little as can be, as long as that helps."""
-    best, crossing, rings = V, _crossing(model, V), _RINGS
+    best, crossing, rings = V, crossings(model, V), _RINGS
     edges = adjacency(model.faces, len(V)).astype(float).tocsr()
     degree = np.asarray(edges.sum(1)).ravel()
     bent = sp.eye_array(len(V)) - sp.diags_array(1 / np.maximum(degree, 1)) @ edges
@@ -67,7 +67,7 @@ def uncrossed(model: MorphableModel, V: np.ndarray) -> np.ndarray:
         stay = _STAY * sp.eye_array(len(free))
         right = _STAY * best[free] - energy[free][:, rest] @ best[rest]
         tried[free] = solve(factor_spd(energy[free][:, free] + stay), right)
-        found = _crossing(model, tried)
+        found = crossings(model, tried)
         if len(found) < len(crossing):
             best, crossing = tried, found
         else:
@@ -75,7 +75,7 @@ def uncrossed(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     return best
 
 
-def _crossing(model: MorphableModel, V: np.ndarray) -> np.ndarray:
+def crossings(model: MorphableModel, V: np.ndarray) -> np.ndarray:
     """Triangles (c,) of the model, around its mouth, that intersect others there."""
     patch = lower_face(model)
     return _triangles(model)[np.unique(self_intersections(V[patch.vertices], patch.faces))]

@@ -15,20 +15,22 @@ from toongeo.pipeline.align.align_face import AlignedFace
 from toongeo.pipeline.rig.mouth.lower_face import lower_face
 from toongeo.pipeline.rig.mouth.open_as_drawn import OPENING
 from toongeo.pipeline.rig.rig import Rig
+from toongeo.pipeline.rig.skin.affine_around import affine_around
 from toongeo.pipeline.rig.skin.crossing_triangles import Sheet, around, crossing_triangles
 from toongeo.pipeline.rig.skin.neighbour_means import neighbour_means
 
 __all__ = ["unfold_mouth"]
 
-_SEALS = ("mouthClose", "mouthPucker")  # the lips of these touch: they are given by what they seal
 _NAMES = ("cheek", "jaw", "mouth", "nose")
-_LIPS_MM = 3.0  # on the template, from the line where the lips meet: there skin lies upon skin and crosses unbent
-_MOVES_MM = 0.5  # lips that move less stay as they are
+_LIPS_MM = 6.5  # on the template, from the line where the lips meet: there skin lies upon skin and crosses unbent
+_MOVES_MM = 0.3  # lips that move less stay as they are
 # Skin that comes to cross is sheared or turned: ends of its edges part by so much of their length, or those of edges
 # so near.
 _BENT, _REACH = 0.5, 3
 _ALLOWED = 3  # triangles that may intersect others
 _SMOOTHED = ((3, 3), (5, 8))  # edges around crossings, and how often motions are made alike there
+_PRESSED = ((2, 3), (4, 6))  # edges around crossings where motions are made affine, and where that fades out
+_TIMES = 3  # that this is done: a fading motion may cross what is around it
 _SURROUNDINGS = 7  # edges around crossings within which new ones are looked for
 _WEAKENED = (0.7,)  # of an expression that still crosses: less of it would no longer be seen
 
@@ -38,8 +40,9 @@ def unfold_mouth(face: AlignedFace, rig: Rig) -> Rig:
 
     Lips that are drawn thin, or shut, have less room between them than the template's, and corners have the least.
     Where triangles come to intersect others that did not in the neutral face, the motions of neighbours are made
-    alike, and if that does not help, the expression is weakened, to 0.7 at most; of all that is tried the gentlest
-    change that helps is taken, or the one that leaves the fewest. What opens the mouth of the picture is not weakened.
+    alike, or affine (:func:`~toongeo.pipeline.rig.skin.affine_around.affine_around`), and if that does not help, the
+    expression is weakened, to 0.7 at most; of all that is tried the gentlest change that helps is taken, or the one
+    that leaves the fewest. What opens the mouth of the picture is not weakened.
     ``mouthClose`` is changed by what ``jawOpen`` lost, so that both together still seal the lips.
 
     Parameters
@@ -56,12 +59,12 @@ def unfold_mouth(face: AlignedFace, rig: Rig) -> Rig:
     started = time.perf_counter()
     model, neutral, deltas = face.model, rig.neutral, rig.deltas.copy()
     patch, index = lower_face(model), {name: k for k, name in enumerate(rig.names)}
-    looked_at = [k for name, k in index.items() if name.startswith(_NAMES) and name not in _SEALS]
+    looked_at = [k for name, k in index.items() if name.startswith(_NAMES) and name != "mouthClose"]
     suspects = {k: _suspects(model, neutral, deltas[k]) for k in looked_at}
     sheets = [Sheet(neutral + deltas[k], triangles) for k, triangles in suspects.items()]
     for k, hit in zip(suspects, crossing_triangles(patch, sheets), strict=True):
         if len(hit) > _ALLOWED:
-            gains = () if rig.names[k] in OPENING else _WEAKENED
+            gains = None if rig.names[k] == "mouthPucker" else () if rig.names[k] in OPENING else _WEAKENED
             deltas[k] = _gentler(model, neutral, deltas[k].astype(float), hit, gains)
     if {"jawOpen", "mouthClose"} <= index.keys():
         jaw = index["jawOpen"]
@@ -70,22 +73,32 @@ def unfold_mouth(face: AlignedFace, rig: Rig) -> Rig:
 
 
 def _gentler(
-    model: MorphableModel, neutral: np.ndarray, way: np.ndarray, hit: np.ndarray, gains: tuple[float, ...]
+    model: MorphableModel, neutral: np.ndarray, way: np.ndarray, hit: np.ndarray, gains: tuple[float, ...] | None
 ) -> np.ndarray:
-    """A motion (n, 3) like ``way`` that leads fewer triangles of the lower face through others than ``hit`` (c,)."""
+    """A motion (n, 3) like ``way`` that leads fewer triangles of the lower face through others than ``hit`` (c,).
+
+    Without ``gains`` it is made affine only, which keeps sealed lips together.
+    """
     patch = lower_face(model)
-    least, best = len(hit), way
     known = around(model, patch.vertices[patch.faces[hit]], _SURROUNDINGS)[patch.vertices] > 0
     looked_at = np.flatnonzero(known[patch.faces].any(1))
     resting = crossing_triangles(patch, [Sheet(neutral, looked_at)])[0]
-    smooth = [way, *(_alike(model, way, patch.vertices[patch.faces[hit]], *how) for how in _SMOOTHED)]
-    for gain in (1.0, *gains):
-        for tried in smooth if gain < 1 else smooth[1:]:
-            found = np.setdiff1d(crossing_triangles(patch, [Sheet(neutral + gain * tried, looked_at)])[0], resting)
-            if len(found) < least:
-                least, best = len(found), gain * tried
-            if least <= _ALLOWED:
+    best, smoothed = way, gains is not None
+    for _ in range(_TIMES):
+        at = patch.vertices[patch.faces[hit]]
+        smooth = [_alike(model, best, at, *how) for how in _SMOOTHED] if smoothed else []
+        starts = [best, *smooth[-1:]]
+        pressed = [_pressed(model, neutral, start, at, *how) for how in _PRESSED for start in starts]
+        tries = smooth + pressed + [gain * tried for gain in gains or () for tried in [best, *smooth, *pressed]]
+        least, smoothed, gains = len(hit), False, None
+        for tried in tries:
+            found = np.setdiff1d(crossing_triangles(patch, [Sheet(neutral + tried, looked_at)])[0], resting)
+            if len(found) < len(hit):
+                hit, best = found, tried
+            if len(hit) <= _ALLOWED:
                 return best
+        if len(hit) == least:
+            break
     return best
 
 
@@ -97,6 +110,13 @@ def _alike(model: MorphableModel, way: np.ndarray, at: np.ndarray, width: int, p
     for _ in range(passes):
         way[moved] += weight[moved, None] * (means @ way - way[moved])
     return way
+
+
+def _pressed(
+    model: MorphableModel, neutral: np.ndarray, way: np.ndarray, at: np.ndarray, core: int, fade: int
+) -> np.ndarray:
+    """Motions (n, 3) that are affine around vertices, but where there are none."""
+    return (affine_around(model, neutral, neutral + way, at, core, fade) - neutral) * way.any(1)[:, None]
 
 
 def _suspects(model: MorphableModel, neutral: np.ndarray, way: np.ndarray) -> np.ndarray:
