@@ -1,3 +1,5 @@
+import sys
+
 import numpy as np
 import pytest
 import skimage.data
@@ -164,3 +166,23 @@ def test_confidence_means_what_it_says(crowd):
     assert abs(chances.mean() - right.mean()) < 0.1
     low, high = chances < np.median(chances), chances >= np.median(chances)
     assert right[high].mean() > right[low].mean() + 0.05
+
+
+def test_eyes_behind_dark_glasses_are_not_sure(photograph, found, monkeypatch):
+    """Whatever the cascade says of them, it is half as sure; of the other points it is as sure as it was."""
+    import cv2
+
+    worn, unit = photograph.picture.copy(), np.linalg.norm(found.points[36] - found.points[45])
+    eyes = np.r_[PARTS["eye_right"], PARTS["eye_left"]]
+    for part in (eyes[:6], eyes[6:]):
+        x, y = map(float, photograph.landmarks[part].mean(0))
+        cv2.ellipse(worn, ((x, y), (0.47 * unit, 0.42 * unit), 0.0), (22, 20, 20), -1)
+    behind = detect_landmarks(worn)
+    assert found.is_sure and not behind.is_sure
+    module = sys.modules["toongeo.pipeline.landmarks.detect_faces"]  # the package names the function alike
+    monkeypatch.setattr(module, "are_dark", lambda light: False)
+    without = detect_landmarks(worn)
+    np.testing.assert_array_equal(behind.points, without.points)
+    np.testing.assert_array_equal(behind.confidence[eyes], without.confidence[eyes] / 2)
+    others = np.delete(np.arange(68), eyes)
+    np.testing.assert_array_equal(behind.confidence[others], without.confidence[others])

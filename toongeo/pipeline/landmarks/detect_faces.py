@@ -6,14 +6,18 @@ from numpy.typing import NDArray
 
 from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_image import check_image
+from toongeo.pipeline.landmarks.evidence.eye_light import are_dark, light_about_eyes
+from toongeo.pipeline.landmarks.evidence.upright_crop import EYES, upright_crop
 from toongeo.pipeline.landmarks.search.detector_file import shipped_detector
-from toongeo.pipeline.landmarks.search.find_faces import find_faces
+from toongeo.pipeline.landmarks.search.find_faces import FoundFace, find_faces
 from toongeo.protocols import LandmarkDetection
 
 __all__ = ["detect_faces"]
 
 _LONGEST_PX = 960  # of the picture that is worked on: a face of interest has some 100 px then, and memory is bounded
 _SHORTEST_PX = 8
+# Of the chance of eye points behind dark glasses: on 60 such renders 0.34 of them are right, and 0.68 was said.
+_HIDDEN = 0.5
 
 
 def detect_faces(img: NDArray[np.uint8]) -> list[LandmarkDetection]:
@@ -22,7 +26,8 @@ def detect_faces(img: NDArray[np.uint8]) -> list[LandmarkDetection]:
     No network runs. Boxes come from linear templates on orientation histograms over a pyramid, upright and, if no face
     is sure, tilted; the landmarks from a cascade of linear regressions on orientation maps around them, run from
     several starts and on the mirrored picture, of which the median is taken. All of it was trained on renders of the
-    default template: people, caricatures and cartoons, in many styles.
+    default template: people, caricatures and cartoons, in many styles. Points of eyes behind dark glasses are a guess,
+    and their confidence says so.
 
     Parameters
     ----------
@@ -61,4 +66,12 @@ def detect_faces(img: NDArray[np.uint8]) -> list[LandmarkDetection]:
         return []
     with one_thread():  # how BLAS splits a sum among threads would show in the last digits
         found = find_faces(grey, shipped_detector())
-    return [LandmarkDetection((face.points + 0.5) * back - 0.5, face.confidence, face.chance) for face in found]
+    return [LandmarkDetection((face.points + 0.5) * back - 0.5, _doubted(small, face), face.chance) for face in found]
+
+
+def _doubted(img: np.ndarray, face: FoundFace) -> NDArray[np.float64]:
+    """The confidence (68,) of a face's points, less at eyes that are not seen."""
+    confidence = face.confidence.copy()
+    if are_dark(light_about_eyes(upright_crop(img, face.points))):
+        confidence[np.concatenate(EYES)] *= _HIDDEN
+    return confidence

@@ -15,8 +15,9 @@ from toongeo.geometry.one_thread import one_thread
 from toongeo.io.check_image import check_image
 from toongeo.io.landmark_array import landmark_array
 from toongeo.model.data_path import data_path
-from toongeo.pipeline.landmarks.evidence.colour_cues import COLOUR_CUES, colour_cues, light_about_eyes
+from toongeo.pipeline.landmarks.evidence.colour_cues import COLOUR_CUES, colour_cues
 from toongeo.pipeline.landmarks.evidence.edge_cues import EDGE_CUES, edge_cues
+from toongeo.pipeline.landmarks.evidence.eye_light import are_dark, light_about_eyes
 from toongeo.pipeline.landmarks.evidence.upright_crop import upright_crop
 from toongeo.pipeline.landmarks.search.detector_file import shipped_detector
 from toongeo.pipeline.landmarks.search.frames import applied, box_of, inverse, similarity_onto
@@ -27,7 +28,6 @@ __all__ = ["CUES", "LandmarkEvidence", "evidence_cues", "landmark_evidence"]
 CUES = (*EDGE_CUES, *COLOUR_CUES, "face", "constant")
 _PLAUSIBLE = 0.08  # of 180 renders with right points none has less, of 309 with wrong ones 299 have
 _BLANK = 1.5  # CIELAB; the lightness of a face of the faintest pencil drawing spreads by 4 and more
-_DARK = 0.6  # of the skin's lightness; on 25 pictures, what is about an eye reaches 0.75 at least
 _FEWEST = 6
 
 
@@ -46,7 +46,7 @@ class LandmarkEvidence:
     spread : float
         Standard deviation of the lightness (CIELAB) between jaw and brows.
     eye_light : (2,) float64
-        How light the lightest part of right and left eye and what is about it is, as a share of the skin's lightness.
+        How light what lies about right and left eye is, nearly all of it, as a share of the skin's lightness.
     """
 
     cues: Floats
@@ -72,7 +72,7 @@ class LandmarkEvidence:
     @property
     def has_dark_glasses(self) -> bool:
         """Whether both eyes are dark to well beyond their lids."""
-        return bool((self.eye_light < _DARK).all())
+        return are_dark(self.eye_light)
 
 
 def landmark_evidence(img: NDArray[np.uint8], landmarks: NDArray[np.float64]) -> LandmarkEvidence:

@@ -5,13 +5,12 @@ import numpy as np
 from toongeo.arrays import Floats
 from toongeo.pipeline.landmarks.evidence.upright_crop import EYES, UprightCrop
 
-__all__ = ["COLOUR_CUES", "colour_cues", "light_about_eyes"]
+__all__ = ["COLOUR_CUES", "colour_cues"]
 
 COLOUR_CUES = "irises", "lips", "skin"
 _AROUND = 1.4, 2.2  # the ring about an eye, in its own size
 _DARK = 15  # percent of an eye's pixels that are as dark as its iris, at least
 _SAME = 12.0  # CIELAB; skin in one light
-_ABOUT, _LIGHTEST = 1.8, 90  # the size of an eye with its lids, and the percentile of its lightness
 _LIGHTS = 5.0  # CIELAB; added to the spread of a face, which may be drawn in one colour
 
 
@@ -28,18 +27,6 @@ def colour_cues(crop: UprightCrop) -> Floats:
     red = float(np.linalg.norm(np.median(lips, axis=0) - median)) if len(lips) else 0.0
     same = float((np.linalg.norm(skin - median, axis=1) < _SAME).mean())
     return np.array([eyes / spread, red / spread, same])
-
-
-def light_about_eyes(crop: UprightCrop) -> Floats:
-    """(2,) How light the lightest part of right and left eye and their lids is, as a share of the skin's lightness."""
-    light, skin = crop.lab[..., 0], crop.skin()
-    if not skin.any():
-        return np.ones(2)
-    return np.array([_lightest(light[crop.inside(rows, _ABOUT)]) for rows in EYES]) / max(np.median(light[skin]), 1.0)
-
-
-def _lightest(light: np.ndarray) -> float:
-    return float(np.percentile(light, _LIGHTEST)) if len(light) else np.inf
 
 
 def _darker(crop: UprightCrop, rows: np.ndarray) -> float:
