@@ -26,18 +26,23 @@ def triangles_intersect(
     vertices. Contact counts.
     """
     result = np.zeros(len(i), dtype=bool)
+    normals, sizes = _normal(T), _squared_size(T)
+    alive = np.flatnonzero((corners[:, i][:, None] == corners[:, j][None]).sum(axis=(0, 1)) <= 1)
+
+    # One after the other: most pairs are apart already in the plane of the one.
+    for a, b in ((i, j), (j, i)):
+        common = (corners[:, a[alive]][:, None] == corners[:, b[alive]][None]).any(axis=1)
+        sides = _sides(T[:, :, a[alive]], T[:, 0, b[alive]], normals[:, b[alive]], sizes[b[alive]], common)
+        alive = alive[_reaches(sides, common)]
+    i, j = i[alive], j[alive]
+
     same = corners[:, i][:, None] == corners[:, j][None]
-    alive = np.flatnonzero(same.sum(axis=(0, 1)) <= 1)
-    same = same[:, :, alive]
     common_i, common_j = same.any(axis=1), same.any(axis=0)  # (3, p): which corner is shared
-
-    Ti, Tj = T[:, :, i[alive]], T[:, :, j[alive]]
-    si = _sides(Ti, Tj, common_i)  # corners of i against the plane of j
-    sj = _sides(Tj, Ti, common_j)
-    near = np.flatnonzero(_reaches(si, common_i) & _reaches(sj, common_j))
-    alive, Ti, Tj, si, sj = alive[near], Ti[:, :, near], Tj[:, :, near], si[:, near], sj[:, near]
-
-    hit = _edges_hit(Ti, Tj, si, common_i[:, near]) | _edges_hit(Tj, Ti, sj, common_j[:, near])
+    Ti, Tj = T[:, :, i], T[:, :, j]
+    si = _sides(Ti, Tj[:, 0], normals[:, j], sizes[j], common_i)  # corners of i against the plane of j
+    sj = _sides(Tj, Ti[:, 0], normals[:, i], sizes[i], common_j)
+    size = np.maximum(sizes[i], sizes[j])
+    hit = _edges_hit(Ti, Tj, si, size, common_i) | _edges_hit(Tj, Ti, sj, size, common_j)
     flat = (si == 0).all(axis=0) & (sj == 0).all(axis=0)
     hit[flat] = _overlap_in_plane(Ti[:, :, flat], Tj[:, :, flat])
     result[alive[hit]] = True
@@ -61,10 +66,16 @@ def _snap(volumes: NDArray[np.float64], size: NDArray[np.float64]) -> NDArray[np
     return np.where(np.abs(volumes) <= _ZERO * size, 0.0, volumes)
 
 
-def _sides(T: NDArray[np.float64], plane: NDArray[np.float64], common: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Signed volumes (3, p) of the corners of T over the triangles `plane`; 0 for common corners."""
-    volumes = _dot(T - plane[:, :1], _normal(plane)[:, None])
-    return np.where(common, 0.0, _snap(volumes, _squared_size(plane)))
+def _sides(
+    T: NDArray[np.float64],
+    corner: NDArray[np.float64],
+    normal: NDArray[np.float64],
+    size: NDArray[np.float64],
+    common: NDArray[np.bool_],
+) -> NDArray[np.float64]:
+    """Signed volumes (3, p) of the corners of T over triangles of a corner and a normal (3, p); 0 for common ones."""
+    volumes = _dot(T - corner[:, None], normal[:, None])
+    return np.where(common, 0.0, _snap(volumes, size))
 
 
 def _reaches(sides: NDArray[np.float64], common: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -74,11 +85,14 @@ def _reaches(sides: NDArray[np.float64], common: NDArray[np.bool_]) -> NDArray[n
 
 
 def _edges_hit(
-    T: NDArray[np.float64], other: NDArray[np.float64], sides: NDArray[np.float64], common: NDArray[np.bool_]
+    T: NDArray[np.float64],
+    other: NDArray[np.float64],
+    sides: NDArray[np.float64],
+    size: NDArray[np.float64],
+    common: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
     """Whether an edge of T passes through `other`. With a common corner only the opposite edge can."""
     hit = np.zeros(T.shape[2], dtype=bool)
-    size = np.maximum(_squared_size(T), _squared_size(other))
     alone = ~common.any(axis=0)
     for k in range(3):
         p, q = (k + 1) % 3, (k + 2) % 3

@@ -30,7 +30,7 @@ _BENT, _REACH = 0.5, 3
 _ALLOWED = 3  # triangles that may intersect others
 _SMOOTHED = ((3, 3), (5, 8))  # edges around crossings, and how often motions are made alike there
 _PRESSED = ((2, 3), (4, 6))  # edges around crossings where motions are made affine, and where that fades out
-_TIMES = 3  # that this is done: a fading motion may cross what is around it
+_TIMES = 2  # that this is done: a fading motion may cross what is around it
 _SURROUNDINGS = 7  # edges around crossings within which new ones are looked for
 _WEAKENED = (0.7,)  # of an expression that still crosses: less of it would no longer be seen
 
@@ -85,20 +85,24 @@ def _gentler(
     resting = crossing_triangles(patch, [Sheet(neutral, looked_at)])[0]
     best, smoothed = way, gains is not None
     for _ in range(_TIMES):
-        at = patch.vertices[patch.faces[hit]]
+        at, least = patch.vertices[patch.faces[hit]], len(hit)
         smooth = [_alike(model, best, at, *how) for how in _SMOOTHED] if smoothed else []
-        starts = [best, *smooth[-1:]]
-        pressed = [_pressed(model, neutral, start, at, *how) for how in _PRESSED for start in starts]
-        tries = smooth + pressed + [gain * tried for gain in gains or () for tried in [best, *smooth, *pressed]]
-        least, smoothed, gains = len(hit), False, None
-        for tried in tries:
-            found = np.setdiff1d(crossing_triangles(patch, [Sheet(neutral + tried, looked_at)])[0], resting)
-            if len(found) < len(hit):
-                hit, best = found, tried
-            if len(hit) <= _ALLOWED:
-                return best
+        starts, pressed = [best, *smooth[-1:]], []
+        for group in ("alike", "affine", "weaker"):
+            if group == "affine":
+                pressed = [_pressed(model, neutral, start, at, *how) for how in _PRESSED for start in starts]
+            weaker = [gain * tried for gain in gains or () for tried in [starts[0], *smooth, *pressed]]
+            tries = {"alike": smooth, "affine": pressed, "weaker": weaker}[group]
+            crossing = crossing_triangles(patch, [Sheet(neutral + tried, looked_at) for tried in tries])
+            for tried, found in zip(tries, crossing, strict=True):
+                left = np.setdiff1d(found, resting)
+                if len(left) < len(hit):
+                    hit, best = left, tried
+                if len(hit) <= _ALLOWED:
+                    return best
         if len(hit) == least:
             break
+        smoothed, gains = False, None
     return best
 
 
@@ -116,7 +120,8 @@ def _pressed(
     model: MorphableModel, neutral: np.ndarray, way: np.ndarray, at: np.ndarray, core: int, fade: int
 ) -> np.ndarray:
     """Motions (n, 3) that are affine around vertices, but where there are none."""
-    return (affine_around(model, neutral, neutral + way, at, core, fade) - neutral) * way.any(1)[:, None]
+    moving = np.asarray(way.any(axis=1))[:, None]
+    return (affine_around(model, neutral, neutral + way, at, core, fade) - neutral) * moving
 
 
 def _suspects(model: MorphableModel, neutral: np.ndarray, way: np.ndarray) -> np.ndarray:
