@@ -19,6 +19,6 @@ def test_a_hundred_fits_do_not_grow():
 
 
 def test_growth_is_noticed():
-    kept = []
-    before, after = drift.drift(lambda k: kept.append(bytearray(b"x" * (4 << 20))), 20)
+    kept = []  # of blocks so large that no memory which was given back serves for them
+    before, after = drift.drift(lambda k: kept.append(bytearray(b"x" * (40 << 20))), 10)
     assert after - before > drift.MOST_MB
