@@ -4,6 +4,7 @@ Constants were chosen on bad_guy, manga_girl, 11, 31 and 44 (``benchmarks/crossi
 """
 
 import time
+from collections.abc import Iterator
 from functools import lru_cache
 
 import numpy as np
@@ -86,13 +87,7 @@ def _gentler(
     best, smoothed = way, gains is not None
     for _ in range(_TIMES):
         at, least = patch.vertices[patch.faces[hit]], len(hit)
-        smooth = [_alike(model, best, at, *how) for how in _SMOOTHED] if smoothed else []
-        starts, pressed = [best, *smooth[-1:]], []
-        for group in ("alike", "affine", "weaker"):
-            if group == "affine":
-                pressed = [_pressed(model, neutral, start, at, *how) for how in _PRESSED for start in starts]
-            weaker = [gain * tried for gain in gains or () for tried in [starts[0], *smooth, *pressed]]
-            tries = {"alike": smooth, "affine": pressed, "weaker": weaker}[group]
+        for tries in _gentler_ways(model, neutral, best, at, smoothed, gains):
             crossing = crossing_triangles(patch, [Sheet(neutral + tried, looked_at) for tried in tries])
             for tried, found in zip(tries, crossing, strict=True):
                 left = np.setdiff1d(found, resting)
@@ -104,6 +99,22 @@ def _gentler(
             break
         smoothed, gains = False, None
     return best
+
+
+def _gentler_ways(
+    model: MorphableModel,
+    neutral: np.ndarray,
+    way: np.ndarray,
+    at: np.ndarray,
+    smoothed: bool,
+    gains: tuple[float, ...] | None,
+) -> Iterator[list[np.ndarray]]:
+    """Motions (n, 3) to try, the gentlest change first: alike around vertices, affine there, weaker."""
+    smooth = [_alike(model, way, at, *how) for how in _SMOOTHED] if smoothed else []
+    yield smooth
+    pressed = [_pressed(model, neutral, start, at, *how) for how in _PRESSED for start in (way, *smooth[-1:])]
+    yield pressed
+    yield [gain * tried for gain in gains or () for tried in (way, *smooth, *pressed)]
 
 
 def _alike(model: MorphableModel, way: np.ndarray, at: np.ndarray, width: int, passes: int) -> np.ndarray:
